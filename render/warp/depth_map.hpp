@@ -50,7 +50,9 @@ private:
 DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
                       const DepthMapSize& size);
 
-/// The blocks, predicted from their neighbours and deflated (RFC 1950). protocol/FRAMES.md has the format.
+/// In the format of zlib (RFC 1950): for each block the difference of its `far` from what its neighbours make
+/// expect; a bit for each block, set if an edge goes through it; and of those blocks the difference of `near`
+/// from that of the neighbours, then two bytes of `mask`.
 std::string encode(const DepthMap& map);
 /// None where the bytes are not those of a map of this size.
 std::optional<DepthMap> decode(std::string_view bytes, int columns, int rows, double scale);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "commands/commands.hpp"
+#include "commands/glass_charts.hpp"
 #include "measure/calibrate.hpp"
 #include "measure/charts.hpp"
 #include "measure/experiments.hpp"
@@ -229,6 +230,7 @@ void make_folder(const fs::path& folder) {
 }  // namespace
 
 void chart_command(ChartArguments arguments) {
+    if (!arguments.sessions.empty()) return chart_glass(arguments);
     if (arguments.scenes.empty()) arguments.scenes.push_back(default_scene());
     if (arguments.calibrate) return calibrate_scene(arguments);
     require_gnuplot();

@@ -8,6 +8,7 @@
 
 #include "io/read_scene.hpp"
 #include "io/write_scene.hpp"
+#include "measure/glass.hpp"
 #include "room_relay.hpp"
 
 namespace vrut::server::commands {
@@ -499,12 +500,11 @@ std::shared_ptr<Command> describe_worker(WorkerArguments& arguments) {
          "Tokens of those who monitor the worker, of 16 to 1000 bytes. Those of --token-file have priority."},
         {"CREDENTIALS_DIRECTORY", "The group may read a token file in this folder, which systemd makes."}};
     command->exit_statuses = statuses("A signal has ended the worker.");
-    command->examples = {
-        {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes", "Draw what comes."},
-        {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --device 0",
-         "Draw on the first graphics card."},
-        {"vrut-preview worker --nats nats://127.0.0.1 --scenes . --listen 127.0.0.1:8100",
-         "Count the images at http://127.0.0.1:8100/metrics."}};
+    command->examples = {{"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes", "Draw what comes."},
+                         {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --device 0",
+                          "Draw on the first graphics card."},
+                         {"vrut-preview worker --nats nats://127.0.0.1 --scenes . --listen 127.0.0.1:8100",
+                          "Count the images at http://127.0.0.1:8100/metrics."}};
     command->callback([&arguments] { worker_command(arguments); });
     return command;
 }
@@ -596,7 +596,9 @@ std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
         "With --out, the command measures many settings of the renderer, and draws charts of them by "
         "gnuplot. "
         "With --calibrate, it measures the levels that a server draws the scene with on this machine, and "
-        "stores them for it. One of the two is required."};
+        "stores them for it. With --glass, it computes what a client would have seen of a recorded session: "
+        "how far, by mean FLIP, each refresh of its screen lies from the image of a server without delay. "
+        "One of the three is required."};
     command->add_option("SCENE", arguments.scenes, "Measure these scene files.")
         ->type_name("FILE")
         ->default_str("the car");
@@ -610,9 +612,38 @@ std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
             ->add_flag("--calibrate", arguments.calibrate, "Measure the levels of one scene, and store them.")
             ->group(kOutput);
     out->excludes(calibrate);
+    auto* glass = command
+                      ->add_option("--glass", arguments.sessions,
+                                   "Compute the error at the glass in this recorded session.")
+                      ->type_name("LOG")
+                      ->allow_extra_args(false)
+                      ->excludes(calibrate)
+                      ->group(kMeasurement);
+    command
+        ->add_option("--link", arguments.links,
+                     "Over this link: round trip in ms, Mbit/s, percent of packets lost. Without it, a LAN "
+                     "(1,1000), Wi-Fi (20,20), bad Wi-Fi (100,2) and a phone network (200,1).")
+        ->type_name("RTT,RATE[,LOSS]")
+        ->allow_extra_args(false)
+        ->check([](const std::string& text) {
+            const auto link = measure::parse_link(text);
+            return link ? std::string() : link.error();
+        })
+        ->needs(glass)
+        ->group(kMeasurement);
+    add_number(*command, "--latency-target", arguments.latency_target_ms, 5.0, 1000.0,
+               "Let the server choose levels that take up to N ms")
+        ->capture_default_str()
+        ->needs(glass)
+        ->group(kMeasurement);
+    add_number(*command, "--every", arguments.every, 1, 1000, "Judge every Nth of 60 refreshes a second")
+        ->capture_default_str()
+        ->needs(glass)
+        ->group(kMeasurement);
     add_size(*command, arguments.width, arguments.height)->group(kMeasurement);
     add_number(*command, "--frames", arguments.frames, 1, 1000, "Draw N frames of each setting")
         ->capture_default_str()
+        ->excludes(glass)
         ->group(kMeasurement);
     command
         ->add_option("--triangles", arguments.most_triangles,
@@ -620,6 +651,7 @@ std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
         ->check(is_whole_number)
         ->type_name("N")
         ->capture_default_str()
+        ->excludes(glass)
         ->group(kMeasurement);
     add_device(*command, arguments.device);
     command->environment = {state_folder("measured levels")};
@@ -627,13 +659,15 @@ std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
     command->examples = {
         {"vrut-preview chart my.vrut --calibrate", "Store the levels of a scene, in half a minute."},
         {"vrut-preview chart my.vrut --out charts", "Draw all charts of a scene, in some hours."},
-        {"vrut-preview chart my.vrut other.vrut --out charts --size 640x360 --frames 4",
-         "Draw charts of two scenes, in less time."}};
+        {"vrut-preview chart room.vrut --glass session.jsonl --link 100,2",
+         "Compute the error at the glass over bad Wi-Fi."}};
     command->callback([&arguments] {
-        if (!arguments.calibrate && arguments.out.empty()) throw CLI::RequiredError("--out or --calibrate");
-        if (arguments.calibrate && arguments.scenes.size() > 1)
+        if (!arguments.calibrate && arguments.out.empty() && arguments.sessions.empty())
+            throw CLI::RequiredError("--out, --calibrate or --glass");
+        if ((arguments.calibrate || !arguments.sessions.empty()) && arguments.scenes.size() > 1)
             throw CLI::ValidationError(
-                "--calibrate", "expected one scene, found " + std::to_string(arguments.scenes.size()));
+                arguments.calibrate ? "--calibrate" : "--glass",
+                "expected one scene, found " + std::to_string(arguments.scenes.size()));
         chart_command(arguments);
     });
     return command;

@@ -107,7 +107,11 @@ struct ChartArguments {
     std::vector<std::filesystem::path> scenes;  ///< empty: the car
     io::ReadOptions read = kShown;
     std::filesystem::path out;
-    bool calibrate = false;  ///< the server's table alone
+    bool calibrate = false;                       ///< the server's table alone
+    std::vector<std::filesystem::path> sessions;  ///< the error at the glass in these, and nothing else
+    std::vector<std::string> links;               ///< over these; none: the usual ones
+    double latency_target_ms = 50;                ///< that the server holds in them
+    int every = 1;                                ///< refresh of them is judged
     int width = 1280, height = 720;
     int frames = 12;  ///< of each setting
     std::uint64_t most_triangles = 10'000'000;

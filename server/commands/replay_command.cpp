@@ -4,64 +4,20 @@
 
 #include "base/files.hpp"
 #include "commands/commands.hpp"
+#include "commands/session_scenes.hpp"
 #include "engine/encoder.hpp"
 #include "engine/frame_quality.hpp"
 #include "engine/images.hpp"
 #include "observe/log.hpp"
-#include "observe/progress.hpp"
 #include "renderer/renderer.hpp"
 #include "report.hpp"
 #include "room/replay.hpp"
-#include "scenes/library.hpp"
 
 namespace vrut::server::commands {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Scenes of a log: the one that was named, else files of their names beside that, beside the log, in the
-/// folder above it, among the program's scenes or here, with the same content.
-class Scenes {
-public:
-    Scenes(const ReplayArguments& arguments) : given_(arguments.scene), options_{{}, arguments.read} {
-        const fs::path beside = arguments.log.parent_path();
-        folders_ = {given_.parent_path(), given_.parent_path() / "..", beside, beside / "..", fs::path()};
-        for (const fs::path& own : scene_folders()) {
-            folders_.push_back(own);
-            folders_.push_back(own / "car");
-        }
-    }
-
-    tl::expected<scenes::LoadedScene, std::string> find(const std::string& name, const std::string& sha256,
-                                                        std::optional<protocol::UpAxis> up_axis) {
-        scenes::ImportOptions options = options_;
-        if (up_axis) options.read.z_up = *up_axis == protocol::UpAxis::z;
-        if (fs::path given = std::exchange(given_, {}); !given.empty()) {
-            auto scene = scenes::load_scene(given, name, observe::loading_bar(name), options);
-            if (scene && scene->sha256 != sha256)
-                observe::log_warning("another_scene", {{"file", given.string()},
-                                                       {"reason", "it is not the scene that was recorded"}});
-            return scene;
-        }
-        bool found = false;
-        for (const fs::path& folder : folders_) {
-            const fs::path file = folder / name;
-            if (!fs::is_regular_file(file)) continue;
-            found = true;
-            if (scenes::sha256_of(file) == sha256)
-                return scenes::load_scene(file, name, observe::loading_bar(name), options);
-        }
-        return tl::unexpected("the scene '" + name + "' " +
-                              (found ? "has changed since it was recorded" : "is not found") +
-                              "; name it with --scene");
-    }
-
-private:
-    fs::path given_;  // for the first
-    std::vector<fs::path> folders_;
-    const scenes::ImportOptions options_;
-};
 
 /// Writes the session's frames as JPEG files, as clients could have got them.
 class FrameWriter {
@@ -111,7 +67,7 @@ void replay_command(const ReplayArguments& arguments) {
     if (!log->cut.empty()) observe::log_warning("log_cut_off", {{"reason", log->cut}});
     std::optional<FrameWriter> frames;
     if (!arguments.frames.empty()) frames.emplace(arguments.frames, arguments.device);
-    Scenes scenes(arguments);
+    SessionScenes scenes(arguments.log, arguments.scene, arguments.read);
     room::ReplayWatcher watcher;
     if (frames)
         watcher.on_drawn = [&](std::int64_t frame, const room::Room& room) { frames->write(frame, room); };

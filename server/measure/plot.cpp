@@ -204,19 +204,20 @@ std::string script_of(const Plot& plot, const std::filesystem::path& output) {
         << " font ',15' offset 0,0.9\nset label " << quoted(plot.subtitle)
         << " at graph 0.5,1.05 center font ',10' tc rgb '#606060'"
         << "\nset xlabel " << quoted(plot.x_label) << "\nset ylabel " << quoted(plot.y_label)
-        << "\nset logscale xy\n"
+        << "\nset logscale " << (plot.linear_x ? "y" : "xy")
+        << "\n"
            "set border 3 lc rgb '#606060'\n"
            "set tics nomirror textcolor rgb '#303030'\n"
            "set grid xtics ytics lc rgb '#e4e4e4' lw 0.7\n"
            "set errorbars 0.4\n"
            "set key at screen 0.5,0.02 center bottom horizontal Left reverse samplen 1.2 width -1\n"
            "set lmargin 11\nset rmargin 4\nset bmargin 6.8\nset tmargin 4.5\n"
-        << "set xrange [" << frame.x.low << ':' << frame.x.high << "]\n"
+        << "set xrange [" << (plot.linear_x ? 0 : frame.x.low) << ':' << frame.x.high << "]\n"
         << "set yrange [" << frame.y.low << ':' << frame.y.high << "]\n";
     // Within a decade or two, its tenths have no tics of their own: these do.
     for (const auto& [axis, range] : {std::pair("x", frame.x), std::pair("y", frame.y)}) {
         out << "set " << axis << "tics format '" << (range.high > 1e6 ? "%.0s%c" : "%g") << "'\n";  // 2M
-        if (range.high / range.low > 150) continue;
+        if (range.high / range.low > 150 || (plot.linear_x && *axis == 'x')) continue;
         const char* separator = " (";
         out << "set " << axis << "tics";
         const double first = std::pow(10, std::floor(std::log10(range.low)));

@@ -26,7 +26,7 @@ struct Series {
     int color = 0;  ///< of kColors, of lines and points
 };
 
-/// A chart with logarithmic axes.
+/// A chart with logarithmic axes; x may be linear, from 0 on.
 struct Plot {
     std::string file;  ///< without .svg: letters, digits and hyphens
     std::string title, x_label, y_label;
@@ -35,6 +35,7 @@ struct Plot {
     std::optional<double> floor;
     std::string floor_name = "exact";
     std::string subtitle = {};
+    bool linear_x = false;
 };
 
 /// What gnuplot reads: writes an SVG picture to `output`, an absolute path.

@@ -96,6 +96,7 @@ tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& f
     std::size_t number = 1;
     for (const protocol::LogLine& line : log.lines) {
         ++number;
+        if (watcher.before_line) watcher.before_line(line.at, room);
         if (const auto wrong = play(room, line, find_scene, watcher))
             return tl::unexpected("line " + std::to_string(number) + ": " + *wrong);
         room.take_answers();

@@ -29,6 +29,8 @@ using SceneFinder = std::function<tl::expected<scenes::LoadedScene, std::string>
 
 /// What a replay reports.
 struct ReplayWatcher {
+    /// Before each line, with its time, up to which the room may be advanced.
+    std::function<void(SessionTime at, Room& room)> before_line = {};
     /// Behind each frame that was drawn in the session; the room shows what it showed.
     std::function<void(std::int64_t frame, const Room& room)> on_drawn = {};
 };

@@ -9,6 +9,8 @@ const { after, test } = require('node:test');
 const { PROGRAM, examples } = require('./examples.js');
 
 const SCENE = path.join(process.env.VRUT_SCENES, 'teaching', 'glass-crossing.vrut');
+const DATA = path.join(__dirname, '..', 'data');
+const SESSION = path.join(DATA, 'logs', 'orbit.jsonl'), ROOM = path.join(DATA, 'scenes', 'room.vrut');
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-chart-'));
 after(() => fs.rmSync(folder, { recursive: true }));
 
@@ -34,6 +36,39 @@ function checkNesting(svg) {
   }
   assert.deepEqual(open, []);
 }
+
+test('the error at the glass in a session', () => {
+  const glass = path.join(folder, 'glass');
+  const session = ['--glass', SESSION, ROOM, '--size', '96x60', '--every', '6'];
+  const lines = ({ status, stdout, stderr }) => {
+    assert.equal(status, 0, stderr);
+    return stdout.trim().split('\n').map((line) => line.split(/ {2,}/));
+  };
+  const first = lines(run([...session, '--link', '100,2', '--link', '20,20,5', '--out', glass]));
+  assert.deepEqual(first[0].slice(0, 4), ['session', 'link', 'prediction', 'mean']);
+  assert.deepEqual(first.slice(1).map(([, link, prediction]) => `${link} ${prediction}`),
+    ['100,2', '20,20,5'].flatMap((link) => ['none', 'shift and scale', 'warp', 'no delay'].map((prediction) => `${link} ${prediction}`)));
+  const mean = (rows, link, prediction) => Number(rows.find((row) => row[1] === link && row[2] === prediction)[3]);
+  for (const link of ['100,2', '20,20,5']) {
+    assert.ok(mean(first, link, 'warp') < mean(first, link, 'none'), link);
+    assert.ok(mean(first, link, 'no delay') < mean(first, link, 'warp'), link);
+  }
+  assert.ok(mean(first, '20,20,5', 'none') < mean(first, '100,2', 'none'));
+  assert.deepEqual(lines(run([...session, '--link', '100,2'])), first.slice(0, 5), 'the same numbers again');
+
+  const rows = fs.readFileSync(path.join(glass, 'glass.csv'), 'utf8').trim().split('\n');
+  assert.equal(rows[0], 'session,link,prediction,mean,p95,longest_ms,frames,bytes,depth_bytes');
+  assert.equal(rows.length, 9);
+  for (const name of ['glass-links', 'glass-orbit-100-2', 'glass-orbit-20-20-5'])
+    checkNesting(fs.readFileSync(path.join(glass, `${name}.svg`), 'utf8').replace(/<\?xml.*?\?>/, ''));
+
+  fails(2, /--link: expected the round trip in ms .*found '100'/, [...session, '--link', '100']);
+  fails(2, /--link requires --glass/, [SCENE, '--out', out, '--link', '100,2']);
+  fails(1, /nothing\.jsonl: it cannot be opened/, ['--glass', path.join(folder, 'nothing.jsonl')]);
+  fails(1, /orbit\.jsonl: the scene 'room\.vrut' is not found/, ['--glass', SESSION]);
+  fails(2, /--glass: expected one scene, found 2/, ['--glass', SESSION, ROOM, SCENE]);
+  fails(2, /--frames excludes --glass|--glass excludes --frames/, [...session, '--frames', '2']);
+});
 
 test('charts of a scene, and nothing is measured twice', () => {
   const first = run([SCENE, '--out', out, ...SMALL]);
@@ -79,10 +114,9 @@ for (const example of examples('chart')) {
   test(`example: ${example}`, () => {
     const work = fs.mkdtempSync(path.join(folder, 'example-'));
     fs.symlinkSync(PROGRAM, path.join(work, 'vrut-preview'));
-    for (const name of ['my.vrut', 'other.vrut'])
-      fs.copyFileSync(name === 'my.vrut' ? SCENE : path.join(path.dirname(SCENE), 'triangle.vrut'), path.join(work, name));
+    for (const [file, name] of [[SCENE, 'my.vrut'], [ROOM, 'room.vrut'], [SESSION, 'session.jsonl']]) fs.copyFileSync(file, path.join(work, name));
     // As the example, but for how much it measures.
-    const shorter = `${example.replace(/ --(size|frames) \S+/g, '')} ${example.includes('--out') ? SMALL.join(' ') : '--size 64x48'}`;
+    const shorter = `${example.replace(/ --(size|frames) \S+/g, '')} ${example.includes('--out') ? SMALL.join(' ') : '--size 64x48'}${example.includes('--glass') ? ' --every 20' : ''}`;
     const env = { ...environment, PATH: `${work}:${process.env.PATH}` };
     const result = spawnSync('bash', ['-c', shorter], { encoding: 'utf8', cwd: work, env });
     assert.equal(result.status, 0, result.stderr);

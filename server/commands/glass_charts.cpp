@@ -1,0 +1,183 @@
+#include "commands/glass_charts.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+
+#include "commands/session_scenes.hpp"
+#include "measure/charts.hpp"
+#include "measure/glass.hpp"
+#include "measure/page.hpp"
+#include "measure/plot.hpp"
+#include "measure/rows.hpp"
+#include "observe/log.hpp"
+#include "observe/progress.hpp"
+#include "room/replay.hpp"
+#include "scenes/level_store.hpp"
+
+namespace vrut::server::commands {
+
+namespace fs = std::filesystem;
+using namespace measure;
+
+namespace {
+
+/// What is to be seen in a session at each refresh.
+struct Session {
+    std::string name, sha256;
+    std::vector<plan::View> states;
+};
+
+/// In images of the session's shape, and at most of this height.
+Session session_of(const fs::path& file, const ChartArguments& arguments) {
+    const auto log = room::read_event_log(std::ifstream(file), file.string());
+    if (!log) throw std::runtime_error(log.error());
+    if (!log->cut.empty()) observe::log_warning("log_cut_off", {{"reason", log->cut}});
+    Session session{file.stem().string(), log->header.scene_sha256, {}};
+    using Milliseconds = std::chrono::duration<double, std::milli>;
+    const auto record = [&](room::Room& room, room::SessionTime until) {
+        for (;;) {
+            const auto at = std::chrono::duration_cast<room::SessionTime>(
+                Milliseconds(1000 * static_cast<double>(session.states.size()) / kRefreshesPerSecond));
+            if (at > until) return;
+            room.advance(at);
+            plan::View view = room.visible();
+            const protocol::Resize size = room.view_size();
+            view.height = std::min(arguments.height, static_cast<int>(std::lround(size.height)));
+            view.width = std::max(1, static_cast<int>(std::lround(view.height * size.width / size.height)));
+            session.states.push_back(std::move(view));
+        }
+    };
+    room::ReplayWatcher watcher;
+    watcher.before_line = [&](room::SessionTime at, room::Room& room) { record(room, at); };
+    SessionScenes scenes(file, arguments.scenes.empty() ? fs::path() : arguments.scenes.front(),
+                         arguments.read);
+    auto room = room::replay(
+        *log,
+        [&](const auto& name, const auto& sha256, auto up_axis) {
+            return scenes.find(name, sha256, up_axis);
+        },
+        watcher);
+    if (!room) throw std::runtime_error(file.string() + ": " + room.error());
+    if (session.states.empty()) throw std::runtime_error(file.string() + ": the session is empty");
+    // Its end, and the half second in which the last frames come.
+    constexpr auto kAfter = std::chrono::milliseconds(500);
+    record(*room, room->time() + kAfter);
+    return session;
+}
+
+std::vector<SimulatedLink> links_of(const ChartArguments& arguments) {
+    if (arguments.links.empty()) return usual_links();
+    std::vector<SimulatedLink> links;
+    for (const std::string& text : arguments.links) links.push_back(parse_link(text).value());
+    return links;
+}
+
+Plot time_plot(const Session& session, const SimulatedLink& link, const GlassErrors& errors, int every,
+               const std::string& slug) {
+    Plot plot;
+    plot.file = "glass-" + slug;
+    plot.title = "Error at the glass: " + session.name + ", " + link.name;
+    plot.x_label = "seconds";
+    plot.y_label = "mean FLIP";
+    plot.linear_x = true;
+    plot.floor = 1e-3;
+    plot.floor_name = "0.001";
+    for (std::size_t i = 0; i < kPredictions.size(); ++i) {
+        Series series{Series::Look::stairs, kPredictions.at(i), {}, static_cast<int>(i)};
+        for (std::size_t k = 0; k < errors.errors.at(i).size(); ++k)
+            series.marks.push_back(
+                {static_cast<double>(k) * every / kRefreshesPerSecond, errors.errors.at(i)[k], {}, {}});
+        plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+/// Against the round trip, a line for each prediction.
+Plot links_plot(const std::vector<SimulatedLink>& links,
+                const std::vector<std::vector<GlassErrors>>& of_sessions) {
+    Plot plot;
+    plot.file = "glass-links";
+    plot.title = "Error at the glass against the link";
+    plot.x_label = "round trip, ms";
+    plot.y_label = "mean FLIP over sessions, p5 to p95 of their refreshes";
+    for (std::size_t i = 0; i < kPredictions.size(); ++i) {
+        Series series{Series::Look::line, kPredictions.at(i), {}, static_cast<int>(i)};
+        for (std::size_t l = 0; l < links.size(); ++l) {
+            std::vector<double> all;
+            for (const auto& of_links : of_sessions)
+                all.insert(all.end(), of_links[l].errors.at(i).begin(), of_links[l].errors.at(i).end());
+            const Spread spread = spread_of(std::move(all));
+            series.marks.push_back({std::max(links[l].round_trip_ms, 1.0), spread.mean, {}, spread});
+        }
+        plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+std::string text_of(double value, int digits) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
+}
+
+}  // namespace
+
+void chart_glass(const ChartArguments& arguments) {
+    if (!arguments.out.empty()) {
+        require_gnuplot();
+        std::error_code error;
+        fs::create_directories(arguments.out, error);
+        if (error) throw std::runtime_error(arguments.out.string() + " cannot be made: " + error.message());
+    }
+    const std::vector<SimulatedLink> links = links_of(arguments);
+    renderer::Renderer renderer(arguments.device);
+    std::vector<Session> sessions;
+    for (const fs::path& file : arguments.sessions) sessions.push_back(session_of(file, arguments));
+
+    std::string csv = measure::line_of({"session", "link", "prediction", "mean", "p95", "longest_ms",
+                                        "frames", "bytes", "depth_bytes"}) +
+                      "\n";
+    std::vector<Plot> plots;
+    std::vector<std::string> slugs;
+    std::vector<std::vector<GlassErrors>> all;
+    std::printf("%-24s %-16s %-16s %8s %8s %9s %7s %9s %7s\n", "session", "link", "prediction", "mean", "p95",
+                "frozen ms", "frames", "kB/frame", "depth %");
+    for (const Session& session : sessions) {
+        const std::vector<GlassErrors> of_links = [&] {
+            observe::Progress progress;
+            const GlassDemand demand{scenes::levels_of(session.sha256, renderer.description()),
+                                     arguments.latency_target_ms, static_cast<std::size_t>(arguments.every)};
+            return errors_at_glass(session.states, links, demand, renderer,
+                                   [&](double part) { progress.show(part, session.name); });
+        }();
+        for (std::size_t l = 0; l < links.size(); ++l) {
+            const SimulatedLink& link = links[l];
+            const GlassErrors& errors = of_links[l];
+            for (std::size_t i = 0; i < kPredictions.size(); ++i) {
+                const Spread spread = spread_of(errors.errors.at(i));
+                std::printf("%-24s %-16s %-16s %8.4f %8.4f %9.0f %7d %9.1f %7.1f\n", session.name.c_str(),
+                            link.name.c_str(), kPredictions.at(i), spread.mean, spread.p95, errors.longest_ms,
+                            errors.frames, errors.bytes / std::max(1, errors.frames) / 1000,
+                            100 * errors.depth_bytes / std::max(1.0, errors.bytes));
+                csv += measure::line_of({session.name, link.name, kPredictions.at(i), text_of(spread.mean, 6),
+                                         text_of(spread.p95, 6), text_of(errors.longest_ms, 1),
+                                         std::to_string(errors.frames), text_of(errors.bytes, 0),
+                                         text_of(errors.depth_bytes, 0)}) +
+                       "\n";
+            }
+            std::fflush(stdout);
+            plots.push_back(time_plot(session, link, errors, arguments.every,
+                                      slug_of(session.name + " " + link.name, slugs)));
+        }
+        all.push_back(of_links);
+    }
+    if (arguments.out.empty()) return;
+    plots.push_back(links_plot(links, all));
+    write_text(arguments.out / "glass.csv", csv);
+    draw(plots, arguments.out);
+}
+
+}  // namespace vrut::server::commands
