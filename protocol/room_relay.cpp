@@ -65,6 +65,13 @@ std::string answer_key(std::string_view text) {
     return dump(answer["id"]) + " " + dump(answer.value("type", Json()));
 }
 
+std::string given_up_loading(std::string_view text) {
+    Json loading = Json::parse(text, nullptr, false);
+    if (!loading.is_object()) return {};
+    loading["refused"] = "the server that loaded the scene is gone: open it again";
+    return dump(loading);
+}
+
 std::string encode(const EdgeMessage& message) {
     Json json = kFromEdge.write(message.what);
     json["edge"] = message.edge;

@@ -147,6 +147,10 @@ struct RoomMessage {
 /// What of an answer is the same whichever server gives it: its type and its `id`; empty where it has none.
 std::string answer_key(std::string_view text);
 
+/// What is said of a loading whose server is gone, given what that said last. Empty where that is no JSON
+/// object.
+std::string given_up_loading(std::string_view text);
+
 std::string encode(const EdgeMessage& message);
 std::string encode(const RoomMessage& message);
 /// Or a sentence that tells what is wrong with the text.

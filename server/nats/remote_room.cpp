@@ -317,7 +317,10 @@ std::optional<engine::EngineOutput> RemoteRoom::output_of(const protocol::RoomOu
     if (said.width && said.height) output.size = engine::PictureSize{*said.width, *said.height};
     output.present_frame = said.present_frame;
     if (!said.stats.empty()) output.stats = std::make_shared<const std::string>(said.stats);
-    if (!said.loading.empty()) output.loading = std::make_shared<const std::string>(said.loading);
+    std::string loading = said.loading;
+    if (loading.empty() && is_whole && !said.loads) loading = protocol::given_up_loading(loading_);
+    if (!loading.empty()) loading_ = said.loads ? loading : "";
+    if (!loading.empty()) output.loading = std::make_shared<const std::string>(std::move(loading));
     output.loads = said.loads;
     return output;
 }

@@ -115,6 +115,7 @@ private:
     base::Clock::duration clock_difference_{};  ///< of this clock and that of the room's server
     std::shared_ptr<const protocol::StateDocument> document_;
     std::map<std::string, engine::Applied> applied_;
+    std::string loading_;  ///< what was said last of a scene that is being loaded; empty: none is
     bool was_lost_ = false;
     base::Clock::time_point complained_at_{};
 

@@ -109,6 +109,10 @@ TEST_CASE("an answer is known by its type and its id") {
     CHECK(answer_key(R"({"id":3,"type":"ok"})") != answer_key(R"({"id":3,"type":"flown"})"));
     CHECK(answer_key(R"({"type":"error"})").empty());
     CHECK(answer_key("none").empty());
+    CHECK(
+        given_up_loading(R"({"type":"loading","scene":"car","fraction":0.5})") ==
+        R"({"fraction":0.5,"refused":"the server that loaded the scene is gone: open it again","scene":"car","type":"loading"})");
+    CHECK(given_up_loading("").empty());
 }
 
 TEST_CASE("documents that were received lead to the same patches as those that sent them") {

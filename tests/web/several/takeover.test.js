@@ -1,8 +1,11 @@
 // Two servers share a room, and clients come by an edge: they keep their connections, whatever happens to a server.
 import assert from 'node:assert/strict';
+import { copyFileSync } from 'node:fs';
+import path from 'node:path';
 import { describe, test } from 'node:test';
 import { setTimeout as delay } from 'node:timers/promises';
 import { ContractClient } from '../contract/contract-client.js';
+import { sceneFile, temporaryFolder } from '../contract/server.js';
 import { Cluster, eventually, missing } from './cluster.js';
 
 const WITHIN_MS = 15_000;
@@ -125,5 +128,24 @@ describe('a room of two servers', { skip: missing }, () => {
     const watcher = await eventually('a watcher', async () => ContractClient.join(t, await cluster.room(await cluster.edge(), 'stage'), { role: 'view' }));
     assert.deepEqual(Object.keys(watcher.state.markers).sort(), ['after', 'away', 'before', 'later']);
     assert.equal(JSON.stringify(watcher.state.camera), camera);
+  });
+
+  test('says that a scene is not opened when the server that loads it is gone', async (t) => {
+    const folder = temporaryFolder();
+    copyFileSync(sceneFile('stage.vrut'), path.join(folder, 'stage.vrut'));
+    copyFileSync(process.env.VRUT_CAR, path.join(folder, 'car.vrut'));
+    const cluster = new Cluster(t);
+    await cluster.startNats();
+    const scene = path.join(folder, 'stage.vrut'), options = ['--scenes', folder];
+    const servers = [await cluster.serve('stage', { scene, options }), await cluster.serve('stage', { scene, options })];
+    const client = await ContractClient.join(t, await cluster.room(await cluster.edge(), 'stage'));
+    const owner = await cluster.owner(servers);
+    await client.ask({ type: 'open', scene: 'car.vrut' });
+    await client.texted('loading');
+    await owner.stop();
+    const { scene: name, refused } = await client.until('its end', () => client.texts.find((text) => text.type === 'loading' && (text.refused || text.done)), WITHIN_MS);
+    assert.deepEqual([name, refused], ['car.vrut', 'the server that loaded the scene is gone: open it again']);
+    await client.ask({ type: 'open', scene: 'car.vrut' });
+    await client.until('the car', () => client.state.scene.name !== 'Stage' && client.texts.find((text) => text.type === 'loading' && text.done), 60_000);
   });
 });
