@@ -78,7 +78,7 @@ int predicted(std::span<const std::uint8_t> values, int columns, int column, int
 
 /// The difference of two values modulo 256, small ones of either sign as small ones without.
 char difference(int value, int predicted) {
-    const int wrapped = static_cast<std::int8_t>(value - predicted);
+    const int wrapped = (value - predicted + 384) % 256 - 128;
     return static_cast<char>(wrapped < 0 ? -2 * wrapped - 1 : 2 * wrapped);
 }
 std::uint8_t summed(int predicted, char difference) {
@@ -110,8 +110,7 @@ void BlockChoice::took(std::size_t map_bytes, std::size_t frame_bytes) {
     // The bytes of a map grow with its blocks, and so with the square of their size.
     const double most = std::max(kMostOfFrame * static_cast<double>(frame_bytes), kEnough);
     const double wanted = pixels_ * std::sqrt(static_cast<double>(map_bytes) / most);
-    if (wanted > pixels_ || wanted < 0.85 * pixels_)
-        pixels_ = std::clamp(wanted * 1.05, kFinest, kCoarsest);
+    if (wanted > pixels_ || wanted < 0.85 * pixels_) pixels_ = std::clamp(wanted * 1.05, kFinest, kCoarsest);
 }
 
 DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
@@ -126,7 +125,7 @@ DepthMap depth_map_of(std::span<const float> depth, int width, int height, doubl
     const auto pixels = [](int parts, int side) {
         std::vector<std::size_t> at(static_cast<std::size_t>(parts));
         for (std::size_t i = 0; i < at.size(); ++i)
-            at[i] = static_cast<std::size_t>((static_cast<double>(i) + 0.5) * side / parts);
+            at[i] = (2 * i + 1) * static_cast<std::size_t>(side) / (2 * at.size());
         return at;
     };
     const std::vector<std::size_t> columns = pixels(DepthMap::kBits * size.columns, width);
@@ -143,7 +142,7 @@ DepthMap depth_map_of(std::span<const float> depth, int width, int height, doubl
                 const std::size_t x = columns[column + i % DepthMap::kBits];
                 const float value =
                     depth[(static_cast<std::size_t>(height) - 1 - y) * static_cast<std::size_t>(width) + x];
-                parts[i] = static_cast<std::uint8_t>(value * steps + 0.5F);
+                parts[i] = static_cast<std::uint8_t>((static_cast<int>(2 * value * steps) + 1) / 2);
             }
             const Block block = block_of(parts);
             map.near.push_back(block.near);

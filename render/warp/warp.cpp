@@ -19,9 +19,9 @@ constexpr double kBeside = 2;
 
 /// A corner of the grid: where it lies in the image, and where the warp takes it.
 struct Corner {
-    glm::dvec2 uv;      ///< 0 to 1, from the top left
-    glm::dvec4 clip;    ///< x, y, 1 / scale of both, reciprocal distance
-    glm::dvec2 behind;  ///< where the image shows what lies behind this corner
+    glm::dvec2 uv{0};      ///< 0 to 1, from the top left
+    glm::dvec4 clip{0};    ///< x, y, 1 / scale of both, reciprocal distance
+    glm::dvec2 behind{0};  ///< where the image shows what lies behind this corner
     int steps = 0;
     std::size_t block = 0;
 };
@@ -35,15 +35,15 @@ std::size_t index_of(int columns, int column, int row) {
 
 /// Of a block, or of a part of it that shows what is farther.
 glm::dvec2 middle_of_farther(const DepthMap& map, std::size_t block) {
-    const std::size_t columns = static_cast<std::size_t>(map.columns);
-    const glm::dvec2 corner(static_cast<double>(block % columns), static_cast<double>(block / columns));
+    const int at = static_cast<int>(block), column = at % map.columns, row = at / map.columns;
     glm::dvec2 middle(0.5);
     if (map.near[block] != map.far[block]) {
-        const int bit = std::countr_one(map.mask[block]);
-        middle = (glm::dvec2(bit % DepthMap::kBits, bit / DepthMap::kBits) + 0.5) /
-                 static_cast<double>(DepthMap::kBits);
+        constexpr int kLast = DepthMap::kBits * DepthMap::kBits - 1;
+        const int bit = std::min(std::countr_one(map.mask[block]), kLast);
+        const int x = bit % DepthMap::kBits, y = bit / DepthMap::kBits;
+        middle = (glm::dvec2(x, y) + 0.5) / static_cast<double>(DepthMap::kBits);
     }
-    return (corner + middle) / glm::dvec2(map.columns, map.rows);
+    return (glm::dvec2(column, row) + middle) / glm::dvec2(map.columns, map.rows);
 }
 
 /// From the four nearest pixels, those at the side repeated.
@@ -71,7 +71,7 @@ public:
 
     void draw(const std::array<const Corner*, 3>& corners, Layer layer) {
         // Nothing here is clipped: what a corner has behind the eye is not seen.
-        std::array<glm::dvec2, 3> at;
+        std::array<glm::dvec2, 3> at{};
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec4& clip = corners[i]->clip;
             if (clip.z <= 0) return;

@@ -351,6 +351,7 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
         while (!renderer.step(job)) {
         }
         std::vector<Frame> without_delay;
+        without_delay.reserve(shown.size());
         for (const auto& frames : shown) without_delay.push_back(source.draw(k, frames[k]->what.setting));
         if (judged.valid()) judged.get();
         judged = std::async(std::launch::async, [&, k, judge = std::move(job.image), without_delay] {
