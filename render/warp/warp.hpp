@@ -12,12 +12,14 @@ namespace vrut::warp {
 /// (x, y, 1, d), to the same of another camera: of the product m, (m.x, m.y, m.w) / m.z.
 glm::dmat4 warp_matrix(const scene::Camera& from, const scene::Camera& to, double aspect);
 
+/// Of what is infinitely far: it turns with the camera, or stays where it is in the image, as a colour or a
+/// texture behind the scene does.
+enum class Background { turns, stays };
+
 /// What `to` sees of an image that `from` has taken, in the image's size: a grid of the blocks' centres, of
 /// which no triangle spans a step of depth (Mark, McMillan and Bishop, "Post-Rendering 3D Warping", 1997).
 /// What a surface hid and now does not is taken to look like what is seen beside it, and what is beside the
-/// image like its side. What is infinitely far turns with the camera, or stays where it is in the image: a
-/// colour or a texture behind the scene. The page draws the same.
-enum class Background { turns, stays };
+/// image like its side.
 scene::Image warped(const scene::Image& image, const DepthMap& depth, const scene::Camera& from,
                     const scene::Camera& to, Background background);
 

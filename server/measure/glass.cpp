@@ -30,40 +30,57 @@ Clock::duration duration_of(double ms) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::milli>(ms));
 }
 
-/// A frame as it came: decoded, and its depth as well.
+/// A frame as it was sent.
 struct Frame {
     ShownFrame what;
+    std::vector<std::uint8_t> file;
+    std::string depth;
+    warp::DepthMapSize depth_size;
+    double depth_scale = 0;
+};
+
+/// And as the glass has it.
+struct DecodedFrame {
     scene::Image image;
     warp::DepthMap depth;
 };
 
-/// Draws frames, and encodes and decodes them.
+DecodedFrame decoded(const Frame& frame, const plan::View& glass) {
+    auto image = io::decode_image({reinterpret_cast<const char*>(frame.file.data()), frame.file.size()});
+    if (!image) throw std::runtime_error("an image that was encoded cannot be read: " + image.error());
+    auto depth =
+        warp::decode(frame.depth, frame.depth_size.columns, frame.depth_size.rows, frame.depth_scale);
+    if (!depth) throw std::runtime_error("a depth map that was encoded cannot be read");
+    return {resized(*image, glass.width, glass.height), *std::move(depth)};
+}
+
+/// Draws and encodes frames.
 class FrameSource {
 public:
-    FrameSource(const std::vector<plan::View>& states, renderer::Renderer& renderer)
-        : states_(states), renderer_(renderer) {}
+    FrameSource(const std::vector<plan::View>& states, renderer::Renderer& renderer,
+                engine::JpegEncoder& jpeg)
+        : states_(states), renderer_(renderer), jpeg_(jpeg) {}
 
     Frame draw(std::size_t state, const Setting& setting) {
         plan::RenderJob job(view_with(states_[state], setting));
         job.depth_size = warp::depth_map_size(states_[state].width, states_[state].height, blocks_.pixels());
         while (!renderer_.step(job)) {
         }
-        const auto file = jpeg_.encode(job.image, setting.jpeg_quality, setting.subsampled);
-        auto image = io::decode_image({reinterpret_cast<const char*>(file.data()), file.size()});
-        if (!image) throw std::runtime_error("an image that was encoded cannot be read: " + image.error());
-        const std::string bytes = warp::encode(job.depth);
-        const auto depth = warp::decode(bytes, job.depth.columns, job.depth.rows, job.depth.scale);
-        if (!depth) throw std::runtime_error("a depth map that was encoded cannot be read");
-        blocks_.took(bytes.size(), file.size());
-        const plan::View& view = states_[state];
-        return {
-            {state, setting, file.size(), bytes.size()}, resized(*image, view.width, view.height), *depth};
+        Frame frame{{state, setting},
+                    jpeg_.encode(job.image, setting.jpeg_quality, setting.subsampled),
+                    warp::encode(job.depth),
+                    job.depth_size,
+                    job.depth.scale};
+        frame.what.bytes = frame.file.size();
+        frame.what.depth_bytes = frame.depth.size();
+        blocks_.took(frame.what.depth_bytes, frame.what.bytes);
+        return frame;
     }
 
 private:
     const std::vector<plan::View>& states_;
     renderer::Renderer& renderer_;
-    engine::JpegEncoder jpeg_;
+    engine::JpegEncoder& jpeg_;
     warp::BlockChoice blocks_;
 };
 
@@ -244,7 +261,7 @@ warp::Background background_of(const plan::View& view) {
 }
 
 /// What the page does where the camera only moves or zooms: all as far away as the focus.
-scene::Image shifted(const Frame& frame, const scene::Camera& from, const scene::Camera& to,
+scene::Image shifted(const DecodedFrame& frame, const scene::Camera& from, const scene::Camera& to,
                      warp::Background background) {
     constexpr double kSame = 1e-9;
     const bool is_turned = glm::distance(scene::view_direction(from), scene::view_direction(to)) > kSame ||
@@ -260,7 +277,7 @@ scene::Image shifted(const Frame& frame, const scene::Camera& from, const scene:
 
 using Errors = std::array<double, kPredictions.size()>;
 
-Errors errors_of(const Frame& frame, const Frame& without_delay, const plan::View& drawn,
+Errors errors_of(const DecodedFrame& frame, const DecodedFrame& without_delay, const plan::View& drawn,
                  const plan::View& now, const scene::Image& judge) {
     const auto error = [&](const scene::Image& shown) {
         const std::vector<float> values = compare::flip(shown, judge);
@@ -335,10 +352,13 @@ GlassErrors counted(const std::vector<std::shared_ptr<const Frame>>& shown,
 std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
                                          const std::vector<SimulatedLink>& links, const GlassDemand& demand,
                                          renderer::Renderer& renderer, const PartDone& done) {
-    FrameSource source(states, renderer);
+    // Each link has sources of its own: what one chooses is nothing to another.
+    engine::JpegEncoder jpeg;
+    std::vector<FrameSource> without_delay(links.size(), FrameSource(states, renderer, jpeg));
     std::vector<std::vector<std::shared_ptr<const Frame>>> shown;
     std::vector<GlassErrors> results;
     for (const SimulatedLink& link : links) {
+        FrameSource source(states, renderer, jpeg);
         shown.push_back(Delivery(states, link, demand.levels, demand.target_ms, source).run());
         results.push_back(counted(shown.back(), states));
     }
@@ -350,15 +370,16 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
         plan::RenderJob job(view);
         while (!renderer.step(job)) {
         }
-        std::vector<Frame> without_delay;
-        without_delay.reserve(shown.size());
-        for (const auto& frames : shown) without_delay.push_back(source.draw(k, frames[k]->what.setting));
+        std::vector<Frame> fresh;
+        fresh.reserve(links.size());
+        for (std::size_t i = 0; i < links.size(); ++i)
+            fresh.push_back(without_delay[i].draw(k, shown[i][k]->what.setting));
         if (judged.valid()) judged.get();
-        judged = std::async(std::launch::async, [&, k, judge = std::move(job.image), without_delay] {
+        judged = std::async(std::launch::async, [&, k, judge = std::move(job.image), fresh] {
             for (std::size_t i = 0; i < links.size(); ++i) {
                 const Frame& frame = *shown[i][k];
-                const Errors errors =
-                    errors_of(frame, without_delay[i], states[frame.what.drawn], states[k], judge);
+                const Errors errors = errors_of(decoded(frame, states[k]), decoded(fresh[i], states[k]),
+                                                states[frame.what.drawn], states[k], judge);
                 for (std::size_t p = 0; p < errors.size(); ++p) results[i].errors[p].push_back(errors[p]);
             }
         });

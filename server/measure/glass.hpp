@@ -37,7 +37,7 @@ inline constexpr std::array kPredictions{"none", "shift and scale", "warp", "no 
 /// How the server draws what is shown at a refresh.
 struct ShownFrame {
     std::size_t drawn = 0;  ///< the refresh whose state it shows
-    Setting setting;
+    Setting setting = {};
     std::size_t bytes = 0, depth_bytes = 0;  ///< of its file, and of its depth
 };
 

@@ -54,7 +54,8 @@ test('the error at the glass in a session', () => {
     assert.ok(mean(first, link, 'no delay') < mean(first, link, 'warp'), link);
   }
   assert.ok(mean(first, '20,20,5', 'none') < mean(first, '100,2', 'none'));
-  assert.deepEqual(lines(run([...session, '--link', '100,2'])), first.slice(0, 5), 'the same numbers again');
+  const again = lines(run([...session, '--link', '20,20,5']));
+  assert.deepEqual(again.slice(1), first.slice(5), 'the same numbers again, whatever other links there are');
 
   const rows = fs.readFileSync(path.join(glass, 'glass.csv'), 'utf8').trim().split('\n');
   assert.equal(rows[0], 'session,link,prediction,mean,p95,longest_ms,frames,bytes,depth_bytes');
