@@ -1,5 +1,7 @@
 #include "commands/glass_charts.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -30,28 +32,58 @@ struct Session {
     std::vector<plan::View> states;
 };
 
-/// In images of the session's shape, and at most of this height.
+constexpr auto kLongest = std::chrono::hours(1);
+
+/// Takes down what is to be seen, in images of the view's shape that fit into a size.
+class Recorder {
+public:
+    Recorder(std::string name, int width, int height)
+        : name_(std::move(name)), width_(width), height_(height) {}
+
+    /// Throws std::runtime_error where the session is too long.
+    void record(room::Room& room, room::SessionTime until) {
+        if (until > kLongest)
+            throw std::runtime_error(name_ + ": the session is longer than an hour: cut its log");
+        using Milliseconds = std::chrono::duration<double, std::milli>;
+        for (;;) {
+            const auto at = std::chrono::duration_cast<room::SessionTime>(
+                Milliseconds(1000 * static_cast<double>(states.size()) / kRefreshesPerSecond));
+            if (at > until) return;
+            room.advance(at);
+            states.push_back(state_of(room));
+        }
+    }
+
+    std::vector<plan::View> states;
+
+private:
+    plan::View state_of(const room::Room& room) {
+        plan::View view = room.visible();
+        const protocol::Resize size = room.view_size();
+        const double scale = std::min({1.0, width_ / size.width, height_ / size.height});
+        view.width = std::max(1, static_cast<int>(std::lround(scale * size.width)));
+        view.height = std::max(1, static_cast<int>(std::lround(scale * size.height)));
+        if (view.scene->scene != scene_) {
+            scene_ = view.scene->scene;
+            levels_ = detail_levels_of(view.scene);
+        }
+        view.levels = levels_;
+        return view;
+    }
+
+    std::string name_;
+    int width_, height_;
+    std::shared_ptr<const scene::Scene> scene_;
+    std::shared_ptr<const mesh::DetailLevels> levels_;  // of that scene
+};
+
 Session session_of(const fs::path& file, const ChartArguments& arguments) {
     const auto log = room::read_event_log(std::ifstream(file), file.string());
     if (!log) throw std::runtime_error(log.error());
     if (!log->cut.empty()) observe::log_warning("log_cut_off", {{"reason", log->cut}});
-    Session session{file.stem().string(), log->header.scene_sha256, {}};
-    using Milliseconds = std::chrono::duration<double, std::milli>;
-    const auto record = [&](room::Room& room, room::SessionTime until) {
-        for (;;) {
-            const auto at = std::chrono::duration_cast<room::SessionTime>(
-                Milliseconds(1000 * static_cast<double>(session.states.size()) / kRefreshesPerSecond));
-            if (at > until) return;
-            room.advance(at);
-            plan::View view = room.visible();
-            const protocol::Resize size = room.view_size();
-            view.height = std::min(arguments.height, static_cast<int>(std::lround(size.height)));
-            view.width = std::max(1, static_cast<int>(std::lround(view.height * size.width / size.height)));
-            session.states.push_back(std::move(view));
-        }
-    };
+    Recorder recorder(file.string(), arguments.width, arguments.height);
     room::ReplayWatcher watcher;
-    watcher.before_line = [&](room::SessionTime at, room::Room& room) { record(room, at); };
+    watcher.before_line = [&](room::SessionTime at, room::Room& room) { recorder.record(room, at); };
     SessionScenes scenes(file, arguments.scenes.empty() ? fs::path() : arguments.scenes.front(),
                          arguments.read);
     auto room = room::replay(
@@ -61,11 +93,10 @@ Session session_of(const fs::path& file, const ChartArguments& arguments) {
         },
         watcher);
     if (!room) throw std::runtime_error(file.string() + ": " + room.error());
-    if (session.states.empty()) throw std::runtime_error(file.string() + ": the session is empty");
     // Its end, and the half second in which the last frames come.
     constexpr auto kAfter = std::chrono::milliseconds(500);
-    record(*room, room->time() + kAfter);
-    return session;
+    recorder.record(*room, room->time() + kAfter);
+    return {file.stem().string(), log->header.scene_sha256, std::move(recorder.states)};
 }
 
 std::vector<SimulatedLink> links_of(const ChartArguments& arguments) {

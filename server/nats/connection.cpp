@@ -43,6 +43,8 @@ std::string public_part(const std::string& urls) {
 void on_lost(natsConnection* connection, void*) {
     if (!natsConnection_IsClosed(connection)) observe::log_warning("nats_disconnected", {});
 }
+void on_back(natsConnection*, void*) { observe::log_info("nats_reconnected", {}); }
+
 std::string reason_of(natsStatus status, jsErrCode error) {
     if (error == JSNotEnabledErr || status == NATS_NO_RESPONDERS)
         return "JetStream is off; start nats-server with -js";
@@ -55,18 +57,6 @@ std::string reason_of(natsStatus status, jsErrCode error) {
 }
 
 }  // namespace
-
-void Connection::on_back(natsConnection*, void* self) {
-    static_cast<Connection*>(self)->reconnected_at_ =
-        std::chrono::steady_clock::now().time_since_epoch().count();
-    observe::log_info("nats_reconnected", {});
-}
-
-std::optional<std::chrono::steady_clock::time_point> Connection::reconnected_at() const {
-    const auto at = reconnected_at_.load();
-    if (at == 0) return std::nullopt;
-    return std::chrono::steady_clock::time_point(std::chrono::steady_clock::duration(at));
-}
 
 std::string header_of(natsMsg* message, const char* name) {
     const char* value = nullptr;
@@ -116,7 +106,7 @@ Connection::Connection(const std::string& urls) : name_(public_part(urls)) {
     natsOptions_SetIgnoreDiscoveredServers(options.get(), true);
     natsOptions_SetName(options.get(), "vrut-preview");
     natsOptions_SetDisconnectedCB(options.get(), on_lost, nullptr);
-    natsOptions_SetReconnectedCB(options.get(), on_back, this);
+    natsOptions_SetReconnectedCB(options.get(), on_back, nullptr);
     natsConnection* connected = nullptr;
     require(natsConnection_Connect(&connected, options.get()), "it cannot be reached");
     connection_.reset(connected);
@@ -127,6 +117,16 @@ Connection::Connection(const std::string& urls) : name_(public_part(urls)) {
 
 bool Connection::is_connected() const {
     return natsConnection_Status(connection_.get()) == NATS_CONN_STATUS_CONNECTED;
+}
+
+std::uint64_t Connection::reconnects() const {
+    natsStatistics* created = nullptr;
+    if (natsStatistics_Create(&created) != NATS_OK) return 0;
+    const Handle<natsStatistics, natsStatistics_Destroy> statistics(created);
+    std::uint64_t unused = 0, reconnects = 0;
+    natsConnection_GetStats(connection_.get(), created);
+    natsStatistics_GetCounts(created, &unused, &unused, &unused, &unused, &reconnects);
+    return reconnects;
 }
 
 void Connection::require(natsStatus status, const std::string& what, jsErrCode error) const {

@@ -2,9 +2,8 @@
 
 #include <nats/nats.h>
 
-#include <atomic>
-#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,15 +42,12 @@ public:
     /// Of this connection; no other has it.
     const std::string& id() const { return id_; }
     bool is_connected() const;
-    /// When it last came back; none: it has not been lost.
-    std::optional<std::chrono::steady_clock::time_point> reconnected_at() const;
+    /// How many times it has come back.
+    std::uint64_t reconnects() const;
     /// Throws std::runtime_error, naming `what` cannot be done, if it is not OK.
     void require(natsStatus status, const std::string& what, jsErrCode error = {}) const;
 
 private:
-    static void on_back(natsConnection* connection, void* self);
-
-    std::atomic<std::chrono::steady_clock::rep> reconnected_at_{0};
     std::string name_;  // the address without a password
     std::string id_ = random_id();
     Handle<natsConnection, natsConnection_Destroy> connection_;

@@ -230,6 +230,8 @@ void SharedRoom::follow_entry(const RoomStore::Entry& entry) {
 /// Until this server draws the room. Returns false if it is to stop.
 bool SharedRoom::follow(const std::stop_token& stop) {
     observe::log_info("room_followed", {{"room", options_.room}});
+    std::uint64_t reconnects = connection_.reconnects();
+    steady_clock::time_point may_take_from{};
     while (!stop.stop_requested()) {
         if (has_state_)
             follow_log();
@@ -240,8 +242,11 @@ bool SharedRoom::follow(const std::stop_token& stop) {
             if (failure_) throw std::runtime_error(*failure_);
             if (!has_state_) written_.wait_for(lock, stop, kPoll, [] { return false; });
         }
-        const auto back = connection_.reconnected_at();
-        const bool may_take = connection_.is_connected() && (!back || steady_clock::now() - *back >= kYield);
+        if (reconnects != connection_.reconnects()) {
+            reconnects = connection_.reconnects();
+            may_take_from = steady_clock::now() + kYield;
+        }
+        const bool may_take = connection_.is_connected() && steady_clock::now() >= may_take_from;
         const auto lease = may_take ? store_.take_lease(id_) : std::nullopt;
         if (lease && take_over(*lease)) return true;
     }

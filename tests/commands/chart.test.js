@@ -65,6 +65,9 @@ test('the error at the glass in a session', () => {
 
   fails(2, /--link: expected the round trip in ms .*found '100'/, [...session, '--link', '100']);
   fails(2, /--link requires --glass/, [SCENE, '--out', out, '--link', '100,2']);
+  const long = path.join(folder, 'long.jsonl');
+  fs.writeFileSync(long, fs.readFileSync(SESSION, 'utf8').replace(/\{"at":[\d.]+(?=[^\n]*\n$)/, '{"at":4e6'));
+  fails(1, /long\.jsonl: the session is longer than an hour: cut its log/, ['--glass', long, ROOM]);
   fails(1, /nothing\.jsonl: it cannot be opened/, ['--glass', path.join(folder, 'nothing.jsonl')]);
   fails(1, /orbit\.jsonl: the scene 'room\.vrut' is not found/, ['--glass', SESSION]);
   fails(2, /--glass: expected one scene, found 2/, ['--glass', SESSION, ROOM, SCENE]);
