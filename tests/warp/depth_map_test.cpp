@@ -60,8 +60,8 @@ TEST_CASE("what is infinitely far is 0") {
 }
 
 TEST_CASE("images of any size have at most kMostBlocks blocks a side") {
-    for (const auto& [width, height] :
-         {std::pair(1, 1), std::pair(1280, 3), std::pair(1281, 720), std::pair(3, 4000)}) {
+    for (const auto& size : {std::pair(1, 1), std::pair(1280, 3), std::pair(1281, 720), std::pair(3, 4000)}) {
+        const int width = size.first, height = size.second;
         CAPTURE(width);
         const DepthMap map = depth_map_of(depth_of(width, height, [](int x, int) { return 1.0 + x; }), width,
                                           height, kNear, depth_map_size(width, height, 4));
