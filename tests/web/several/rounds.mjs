@@ -169,8 +169,17 @@ async function drag() {
 /** A marker that is answered is there, once, whoever draws the room now, and so are those before it. */
 async function mark(what) {
   const name = `m${marked.length + 1}`;
-  const answer = client.send({ type: 'patch', patch: { markers: { [name]: { point: [marked.length, 0, 0] } } } });
-  await client.until(`the answer to ${name}`, () => client.texts.find((text) => text.id === answer), ANSWER_WITHIN_MS);
+  // Who loses the connection before the answer comes back and asks again.
+  for (let answered = false; !answered; ) {
+    if (client.closed) {
+      ++reconnects;
+      client = await connect();
+    }
+    const answer = client.send({ type: 'patch', patch: { markers: { [name]: { point: [marked.length, 0, 0] } } } });
+    answered = await client.until(`the answer to ${name}`, () => client.texts.find((text) => text.id === answer), ANSWER_WITHIN_MS).catch((error) => {
+      if (!client.closed) throw error;
+    });
+  }
   marked.push(name);
   assert.deepEqual(new Set(Object.keys(client.state.markers)), new Set(marked), what);
   const camera = JSON.stringify(client.state.camera);
