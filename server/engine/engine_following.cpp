@@ -68,7 +68,6 @@ void Engine::handle(const Follow& what) {
 
 void Engine::handle(const TakeOver& take_over) {
     lease_ = take_over.lease;
-    if (!follows_) return take_over.done();
     const base::Clock::time_point now = base::Clock::now();
     start_ = now - room_->time();
     room_->go_on(live_options());

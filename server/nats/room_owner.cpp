@@ -45,16 +45,12 @@ void RoomOwner::begin(engine::RoomEngine& engine, std::uint64_t lease,
         edges_[edge] = {now, false};
         clients_[client] = {edge, known.may_steer, known.sequence, known.sequence};
     }
-    use_lease(lease);
-    thread_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
-}
-
-void RoomOwner::use_lease(std::uint64_t lease) {
     outbox_->post([this, lease]() -> std::optional<Packet> {
         lease_ = lease;
         number_ = 0;
         return {};
     });
+    thread_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
 }
 
 void RoomOwner::skip() {

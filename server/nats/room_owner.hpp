@@ -51,8 +51,6 @@ public:
     /// Messages of edges go to `engine` from here on, which must live longer. `lease` rises with each server
     /// that takes the room over; what is sent before is sent to nobody.
     void begin(engine::RoomEngine& engine, std::uint64_t lease, const std::map<std::string, Known>& clients);
-    /// Under a newer lease from here on.
-    void use_lease(std::uint64_t lease);
     /// Tells edges that this server draws the room no longer. Nothing may be sent from here on, and nothing
     /// that was is kept.
     void end();

@@ -102,13 +102,13 @@ RoomStore::KeyValue RoomStore::bucket(const char* name, std::int64_t time_to_liv
 
 // --- who draws the room
 
-std::optional<std::uint64_t> RoomStore::take_lease(const std::string& holder) {
+bool RoomStore::take_lease(const std::string& holder) {
     std::uint64_t revision = 0;
     if (kvStore_CreateString(&revision, leases_.get(), room_.c_str(), holder.c_str()) != NATS_OK)
-        return std::nullopt;
+        return false;
     holder_ = holder;
     lease_revision_ = revision;
-    return revision;
+    return true;
 }
 
 RoomStore::Renewed RoomStore::renew_lease() {

@@ -20,8 +20,8 @@ public:
 
     // --- who draws the room: a key that expires
     static constexpr std::chrono::seconds kLease{2};
-    /// The lease's number, higher than any before; none: another server has it, or NATS does not answer.
-    std::optional<std::uint64_t> take_lease(const std::string& holder);
+    /// False: another server has it, or NATS does not answer.
+    bool take_lease(const std::string& holder);
     enum class Renewed { yes, expired, lost, unknown };  ///< lost: to another server
     Renewed renew_lease();
     void release_lease();

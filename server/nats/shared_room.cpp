@@ -247,14 +247,14 @@ bool SharedRoom::follow(const std::stop_token& stop) {
             may_take_from = steady_clock::now() + kYield;
         }
         const bool may_take = connection_.is_connected() && steady_clock::now() >= may_take_from;
-        const auto lease = may_take ? store_.take_lease(id_) : std::nullopt;
-        if (lease && take_over(*lease)) return true;
+        if (may_take && store_.take_lease(id_) && take_over()) return true;
     }
     return false;
 }
 
-/// Behind the last line of who drew the room before: it can add no further one then.
-bool SharedRoom::take_over(std::uint64_t lease) {
+/// Behind the last line of who drew the room before: it can add no further one then. The place of this entry
+/// in the log is the lease's number, which rises with each server that takes over.
+bool SharedRoom::take_over() {
     // A state may have been stored since it was asked for; else this server is the first.
     if (!has_state_ && !(has_state_ = load_state())) {
         const auto log = store_.range();
@@ -271,7 +271,7 @@ bool SharedRoom::take_over(std::uint64_t lease) {
         if (followed_ < log->last) continue;
         const auto appended = store_.append("", followed_, id_ + ".first");
         if (!appended) continue;
-        followed_ = *appended;
+        const std::uint64_t lease = followed_ = *appended;
         renewed_at_ = steady_clock::now();
         observe::log_info("room_taken_over", {{"room", options_.room}, {"lease", lease}});
         std::map<std::string, RoomOwner::Known> of_edges;
@@ -323,13 +323,10 @@ bool SharedRoom::renew() {
         case RoomStore::Renewed::unknown:
             renewed_at_ = steady_clock::now();
             return true;
-        case RoomStore::Renewed::expired: {
-            const auto lease = store_.take_lease(id_);
-            if (!lease) break;
-            owner_.use_lease(*lease);
-            engine_->push(engine::TakeOver{*lease, [] {}});
+        case RoomStore::Renewed::expired:
+            // If another server has taken the room over, the next entry is not added.
+            store_.take_lease(id_);
             break;
-        }
     }
     renewed_at_ = steady_clock::now();
     return true;

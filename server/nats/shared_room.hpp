@@ -73,7 +73,7 @@ private:
     bool follow(const std::stop_token& stop);
     void follow_log();
     void follow_entry(const RoomStore::Entry& entry);
-    bool take_over(std::uint64_t lease);
+    bool take_over();
     // While this server does.
     void own(const std::stop_token& stop);
     bool append_lines();
