@@ -182,7 +182,7 @@ bool RoomStore::store_state(const State& state) {
     }
     jsOptions options;
     jsOptions_Init(&options);
-    options.Stream.Purge.Sequence = state.sequence + 1;
+    options.Stream.Purge.Sequence = state.sequence;  // that entry stays: an empty log may begin again
     js_PurgeStream(impatient_.get(), log_.c_str(), &options, nullptr);
     return true;
 }
