@@ -33,7 +33,8 @@ public:
     };
     /// None where none is kept. Throws std::runtime_error where NATS does not answer.
     std::optional<State> state() const;
-    /// And forgets the log before that entry. Returns false where it could not be stored, or a later one is there.
+    /// And forgets the log before that entry. Returns false where it could not be stored, or a later one is
+    /// there.
     bool store_state(const State& state);
 
     // --- the log
