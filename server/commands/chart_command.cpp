@@ -230,10 +230,13 @@ void make_folder(const fs::path& folder) {
 }  // namespace
 
 void chart_command(ChartArguments arguments) {
-    if (!arguments.sessions.empty()) return chart_glass(arguments);
+    if (!arguments.out.empty()) require_gnuplot();
+    if (!arguments.sessions.empty()) {
+        if (!arguments.out.empty()) make_folder(arguments.out);
+        return chart_glass(arguments);
+    }
     if (arguments.scenes.empty()) arguments.scenes.push_back(default_scene());
     if (arguments.calibrate) return calibrate_scene(arguments);
-    require_gnuplot();
     for (const fs::path& scene : arguments.scenes)
         if (!fs::is_regular_file(scene)) throw std::runtime_error(scene.string() + ": there is no such file");
     renderer::Renderer renderer(arguments.device);

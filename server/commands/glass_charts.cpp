@@ -114,10 +114,8 @@ Plot time_plot(const Session& session, const SimulatedLink& link, const GlassErr
     plot.x_label = "seconds";
     plot.y_label = "mean FLIP";
     plot.linear_x = true;
-    plot.floor = 1e-3;
-    plot.floor_name = "0.001";
     for (std::size_t i = 0; i < kPredictions.size(); ++i) {
-        Series series{Series::Look::stairs, kPredictions.at(i), {}, static_cast<int>(i)};
+        Series series{Series::Look::line, kPredictions.at(i), {}, static_cast<int>(i)};
         for (std::size_t k = 0; k < errors.errors.at(i).size(); ++k)
             series.marks.push_back(
                 {static_cast<double>(k) * every / kRefreshesPerSecond, errors.errors.at(i)[k], {}, {}});
@@ -157,12 +155,6 @@ std::string text_of(double value, int digits) {
 }  // namespace
 
 void chart_glass(const ChartArguments& arguments) {
-    if (!arguments.out.empty()) {
-        require_gnuplot();
-        std::error_code error;
-        fs::create_directories(arguments.out, error);
-        if (error) throw std::runtime_error(arguments.out.string() + " cannot be made: " + error.message());
-    }
     const std::vector<SimulatedLink> links = links_of(arguments);
     renderer::Renderer renderer(arguments.device);
     std::vector<Session> sessions;

@@ -125,7 +125,7 @@ void write_data(std::ostream& out, const Plot& plot, const Frame& frame) {
         for (const Mark& mark : plot.series[i].marks) {
             const Spread x = mark.x_spread.value_or(Spread{mark.x, mark.x, mark.x, mark.x});
             const Spread y = mark.y_spread.value_or(Spread{mark.y, mark.y, mark.y, mark.y});
-            out << std::clamp(mark.x, frame.x.low, frame.x.high) << ' '
+            out << std::clamp(mark.x, plot.linear_x ? 0 : frame.x.low, frame.x.high) << ' '
                 << std::clamp(mark.y, lowest, frame.y.high);
             for (const double value : {x.p5, x.p95}) out << ' ' << std::max(value, frame.x.low);
             for (const double value : {y.p5, y.p95}) out << ' ' << std::max(value, lowest);

@@ -317,12 +317,20 @@ std::optional<engine::EngineOutput> RemoteRoom::output_of(const protocol::RoomOu
     if (said.width && said.height) output.size = engine::PictureSize{*said.width, *said.height};
     output.present_frame = said.present_frame;
     if (!said.stats.empty()) output.stats = std::make_shared<const std::string>(said.stats);
-    std::string loading = said.loading;
-    if (loading.empty() && is_whole && !said.loads) loading = protocol::given_up_loading(loading_);
-    if (!loading.empty()) loading_ = said.loads ? loading : "";
-    if (!loading.empty()) output.loading = std::make_shared<const std::string>(std::move(loading));
-    output.loads = said.loads;
+    take_loading(said, output);
     return output;
+}
+
+/// The whole has the last that was said of a loading, which is passed on only if that has not ended here.
+void RemoteRoom::take_loading(const protocol::RoomOutput& said, engine::EngineOutput& output) {
+    const bool is_whole = !said.edge.empty();
+    std::string loading = said.loading;
+    if (is_whole && !said.loads && (loading_.empty() || loading.empty()))
+        loading = protocol::given_up_loading(loading_);  // none where none is under way
+    output.loads = said.loads;
+    if (loading.empty()) return;
+    loading_ = said.loads ? loading : "";
+    output.loading = std::make_shared<const std::string>(std::move(loading));
 }
 
 /// `may_be_known`: some of the answers may have come before.

@@ -83,6 +83,7 @@ private:
     std::optional<engine::EngineOutput> output_of(const protocol::RoomOutput& said);
     void take_state(const protocol::RoomOutput& said, engine::EngineOutput& output);
     void take_answers(const protocol::RoomOutput& said, bool may_be_known, engine::EngineOutput& output);
+    void take_loading(const protocol::RoomOutput& said, engine::EngineOutput& output);
     void take_handled(const protocol::RoomOutput& said, engine::EngineOutput& output);
     std::shared_ptr<const engine::EncodedPicture> picture_of(const protocol::RoomPicture& said,
                                                              std::vector<std::uint8_t> bytes);

@@ -168,10 +168,8 @@ std::optional<Packet> RoomOwner::whole_packet(const std::string& edge) {
     }
     said.present_frame = present_frame_;
     said.stats = stats_;
-    if (loads_) {
-        said.loading = loading_;
-        said.loads = true;
-    }
+    said.loading = loading_;
+    said.loads = loads_;
     applied_.clear();  // the next frame names all
     return packet_of(std::move(said));
 }

@@ -60,8 +60,13 @@ test('the error at the glass in a session', () => {
   const rows = fs.readFileSync(path.join(glass, 'glass.csv'), 'utf8').trim().split('\n');
   assert.equal(rows[0], 'session,link,prediction,mean,p95,longest_ms,frames,bytes,depth_bytes');
   assert.equal(rows.length, 9);
-  for (const name of ['glass-links', 'glass-orbit-100-2', 'glass-orbit-20-20-5'])
-    checkNesting(fs.readFileSync(path.join(glass, `${name}.svg`), 'utf8').replace(/<\?xml.*?\?>/, ''));
+  for (const name of ['glass-links', 'glass-orbit-100-2', 'glass-orbit-20-20-5']) {
+    const svg = fs.readFileSync(path.join(glass, `${name}.svg`), 'utf8');
+    checkNesting(svg.replace(/<\?xml.*?\?>/, ''));
+    // Each line has points at more than a few heights: they lie within the axes.
+    const lines = [...svg.matchAll(/<path stroke='[^']+'\s+d='M([^']+)'/g)].map(([, points]) => new Set([...points.matchAll(/,([\d.]+)/g)].map(([, y]) => y)));
+    assert.ok(lines.filter((heights) => heights.size > (name === 'glass-links' ? 1 : 4)).length >= 3, name);
+  }
 
   fails(2, /--link: expected the round trip in ms .*found '100'/, [...session, '--link', '100']);
   fails(2, /--link requires --glass/, [SCENE, '--out', out, '--link', '100,2']);

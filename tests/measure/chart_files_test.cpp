@@ -138,6 +138,17 @@ TEST_CASE("names are text to gnuplot, whatever they hold") {
     CHECK(script.find("('exact' 0.01)") != std::string::npos);
 }
 
+TEST_CASE("an axis of time begins at 0 and reaches to the last mark") {
+    Plot plot;
+    plot.linear_x = true;
+    plot.series.push_back({Series::Look::line, "", {{0, 0.02, {}, {}}, {3, 0.3, {}, {}}}});
+    const std::string script = script_of(plot, "/tmp/out.svg");
+    CHECK(script.find("set logscale y\n") != std::string::npos);
+    CHECK(script.find("set xrange [0:3.") != std::string::npos);
+    CHECK(script.find("\n0 0.02 ") != std::string::npos);
+    CHECK(script.find("\n3 0.3 ") != std::string::npos);
+}
+
 TEST_CASE("file names of charts are plain, and each its own") {
     std::vector<std::string> taken;
     CHECK(slug_of("Car 20k", taken) == "car-20k");

@@ -1,5 +1,5 @@
-// Records the sessions of tests/data/glass anew, by the real program over its WebSocket, with the car of 20,000 triangles:
-// hands at a tablet, at 60 events a second. What `chart --glass` measures, and its tests.
+// Records the sessions of tests/data/glass, which `chart --glass` measures: the program serves the car of 20,000
+// triangles, and a client sends what hands at a tablet do, 60 events a second.
 //
 //   VRUT_PREVIEW=build/release/server/vrut-preview VRUT_CAR=build/release/scenes/car/car-20k.vrut node tests/measure/record-glass.mjs
 import { copyFileSync, mkdirSync, mkdtempSync } from 'node:fs';

@@ -125,7 +125,7 @@ TEST_CASE("another camera sees what it would have taken, where the first one saw
     for (const auto& move : moves) {
         CAPTURE(move.what);
         const scene::Image image = warped(from.image, from.depth, camera, move.to, Background::turns);
-        // Beside edges, a pixel of what is farther goes with what is nearer.
+        // The warp moves one pixel of the background along with an edge.
         CHECK(wrong_part(image, camera, move.to) < 0.035);
         CHECK(wrong_part(from.image, camera, move.to) > 0.1);
     }
