@@ -590,6 +590,37 @@ std::shared_ptr<Command> describe_compare(CompareArguments& arguments) {
     return command;
 }
 
+CLI::Option* add_glass(Command& command, ChartArguments& arguments) {
+    auto* glass = command
+                      .add_option("--glass", arguments.sessions,
+                                  "Compute the error at the glass in this recorded session.")
+                      ->type_name("LOG")
+                      ->allow_extra_args(false)
+                      ->group(kMeasurement);
+    command
+        .add_option("--link", arguments.links,
+                    "Over this link: round trip in ms, Mbit/s, percent of packets lost. Without it, a LAN "
+                    "(1,1000), Wi-Fi (20,20), bad Wi-Fi (100,2) and a phone network (200,1).")
+        ->type_name("RTT,RATE[,LOSS]")
+        ->allow_extra_args(false)
+        ->check([](const std::string& text) {
+            const auto link = measure::parse_link(text);
+            return link ? std::string() : link.error();
+        })
+        ->needs(glass)
+        ->group(kMeasurement);
+    add_number(command, "--latency-target", arguments.latency_target_ms, 5.0, 1000.0,
+               "Let the server choose levels that take up to N ms")
+        ->capture_default_str()
+        ->needs(glass)
+        ->group(kMeasurement);
+    add_number(command, "--every", arguments.every, 1, 1000, "Judge every Nth of 60 refreshes a second")
+        ->capture_default_str()
+        ->needs(glass)
+        ->group(kMeasurement);
+    return glass;
+}
+
 std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
     auto command = std::make_shared<Command>("Measure speed against accuracy.", "chart");
     command->description = {
@@ -612,34 +643,7 @@ std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
             ->add_flag("--calibrate", arguments.calibrate, "Measure the levels of one scene, and store them.")
             ->group(kOutput);
     out->excludes(calibrate);
-    auto* glass = command
-                      ->add_option("--glass", arguments.sessions,
-                                   "Compute the error at the glass in this recorded session.")
-                      ->type_name("LOG")
-                      ->allow_extra_args(false)
-                      ->excludes(calibrate)
-                      ->group(kMeasurement);
-    command
-        ->add_option("--link", arguments.links,
-                     "Over this link: round trip in ms, Mbit/s, percent of packets lost. Without it, a LAN "
-                     "(1,1000), Wi-Fi (20,20), bad Wi-Fi (100,2) and a phone network (200,1).")
-        ->type_name("RTT,RATE[,LOSS]")
-        ->allow_extra_args(false)
-        ->check([](const std::string& text) {
-            const auto link = measure::parse_link(text);
-            return link ? std::string() : link.error();
-        })
-        ->needs(glass)
-        ->group(kMeasurement);
-    add_number(*command, "--latency-target", arguments.latency_target_ms, 5.0, 1000.0,
-               "Let the server choose levels that take up to N ms")
-        ->capture_default_str()
-        ->needs(glass)
-        ->group(kMeasurement);
-    add_number(*command, "--every", arguments.every, 1, 1000, "Judge every Nth of 60 refreshes a second")
-        ->capture_default_str()
-        ->needs(glass)
-        ->group(kMeasurement);
+    auto* glass = add_glass(*command, arguments)->excludes(calibrate);
     add_size(*command, arguments.width, arguments.height)->group(kMeasurement);
     add_number(*command, "--frames", arguments.frames, 1, 1000, "Draw N frames of each setting")
         ->capture_default_str()
