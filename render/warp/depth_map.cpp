@@ -18,9 +18,10 @@ constexpr int kEdge = 3;
 
 using Parts = std::array<std::uint8_t, kParts>;
 
-struct Block {
+/// Of a block with an edge.
+struct Divided {
     std::uint8_t near = 0, far = 0;
-    std::uint16_t mask = 0xffff;
+    std::uint16_t mask = 0;
 };
 
 std::uint8_t mean(const Parts& parts, std::uint16_t mask) {
@@ -41,25 +42,21 @@ std::uint16_t widened(std::uint16_t mask) {
     return static_cast<std::uint16_t>(wide | wide << 4U | wide >> 4U);
 }
 
-/// Divides it where the steps between its parts are largest.
-Block block_of(const Parts& parts) {
-    const auto [low, high] = std::ranges::minmax(parts);
-    const std::uint8_t all = mean(parts, 0xffff);
-    if (high - low < kEdge) return {all, all};
-    Parts sorted = parts;
-    std::ranges::sort(sorted);
-    int widest = 0;
-    std::uint8_t above = 0;
-    for (std::size_t i = 1; i < sorted.size(); ++i)
-        if (sorted[i] - sorted[i - 1] > widest) {
-            widest = sorted[i] - sorted[i - 1];
-            above = sorted[i];
-        }
-    if (widest < kEdge) return {all, all};  // a slope
-    std::uint16_t mask = 0;
-    for (unsigned i = 0; i < parts.size(); ++i)
-        if (parts[i] >= above) mask = static_cast<std::uint16_t>(mask | 1U << i);
-    return {mean(parts, mask), mean(parts, static_cast<std::uint16_t>(~mask)), widened(mask)};
+/// Divides a block in the middle between its nearest part and its farthest. None where it is a slope.
+std::optional<Divided> divided_of(const Parts& parts, int lowest, int highest) {
+    const int middle = (lowest + highest) / 2;
+    int below = lowest, above = highest;
+    unsigned mask = 0;
+    for (unsigned i = 0; i < parts.size(); ++i) {
+        const int part = parts[i];
+        const bool is_near = part > middle;
+        mask |= static_cast<unsigned>(is_near) << i;
+        above = std::min(above, is_near ? part : above);
+        below = std::max(below, is_near ? below : part);
+    }
+    if (above - below < kEdge) return {};
+    const auto near = static_cast<std::uint16_t>(mask);
+    return Divided{mean(parts, near), mean(parts, static_cast<std::uint16_t>(~near)), widened(near)};
 }
 
 /// Median of left, upper, and the plane through left, upper and upper left (Weinberger et al., "LOCO-I",
@@ -96,6 +93,50 @@ std::size_t size_of(int columns, int rows) {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
 }
 
+/// An image's depth at the middle of each part of its blocks, in steps, rows from the top down.
+struct Samples {
+    Samples(std::span<const float> depth, int width, int height, const DepthMapSize& size)
+        : columns(static_cast<std::size_t>(DepthMap::kBits * size.columns)) {
+        const auto pixels = [](std::size_t parts, int side) {
+            std::vector<std::size_t> at(parts);
+            for (std::size_t i = 0; i < parts; ++i)
+                at[i] = (2 * i + 1) * static_cast<std::size_t>(side) / (2 * parts);
+            return at;
+        };
+        const std::vector<std::size_t> across = pixels(columns, width);
+        const std::vector<std::size_t> down =
+            pixels(static_cast<std::size_t>(DepthMap::kBits * size.rows), height);
+        std::vector<float> values(columns * down.size());
+        float* value = values.data();
+        for (const std::size_t y : down) {
+            const float* row =
+                depth.data() + (static_cast<std::size_t>(height) - 1 - y) * static_cast<std::size_t>(width);
+            for (const std::size_t x : across) *value++ = row[x];
+        }
+        // By several at once: the compiler may not reorder a maximum of floats.
+        std::array<float, kParts> largest{};
+        for (std::size_t i = 0; i < values.size(); i += largest.size())
+            for (std::size_t k = 0; k < largest.size(); ++k)
+                largest[k] = values[i + k] > largest[k] ? values[i + k] : largest[k];
+        nearest = std::ranges::max(largest);
+        const float twice = nearest > 0 ? static_cast<float>(2 * DepthMap::kSteps) / nearest : 0;
+        steps.resize(values.size());
+        for (std::size_t i = 0; i < values.size(); ++i)
+            steps[i] = static_cast<std::uint8_t>((static_cast<int>(values[i] * twice) + 1) / 2);
+    }
+
+    std::array<const std::uint8_t*, DepthMap::kBits> rows_of(int block_row) const {
+        std::array<const std::uint8_t*, DepthMap::kBits> rows{};
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            rows[i] = steps.data() + (static_cast<std::size_t>(block_row) * rows.size() + i) * columns;
+        return rows;
+    }
+
+    std::size_t columns = 0;
+    float nearest = 0;
+    std::vector<std::uint8_t> steps;
+};
+
 }  // namespace
 
 DepthMapSize depth_map_size(int width, int height, double pixels) {
@@ -115,40 +156,43 @@ void BlockChoice::took(std::size_t map_bytes, std::size_t frame_bytes) {
 
 DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
                       const DepthMapSize& size) {
-    DepthMap map{size.columns, size.rows, 0, {}, {}, {}};
-    float nearest = 0;
-    for (const float value : depth) nearest = std::max(nearest, value);
-    map.scale = static_cast<double>(nearest) / near_distance;
-    const float steps = nearest > 0 ? static_cast<float>(DepthMap::kSteps) / nearest : 0;
-
-    // The pixel at the middle of each part.
-    const auto pixels = [](int parts, int side) {
-        std::vector<std::size_t> at(static_cast<std::size_t>(parts));
-        for (std::size_t i = 0; i < at.size(); ++i)
-            at[i] = (2 * i + 1) * static_cast<std::size_t>(side) / (2 * at.size());
-        return at;
-    };
-    const std::vector<std::size_t> columns = pixels(DepthMap::kBits * size.columns, width);
-    const std::vector<std::size_t> rows = pixels(DepthMap::kBits * size.rows, height);
+    const Samples samples(depth, width, height, size);
+    DepthMap map{size.columns, size.rows, static_cast<double>(samples.nearest) / near_distance, {}, {}, {}};
     const std::size_t blocks = size_of(size.columns, size.rows);
-    map.near.reserve(blocks);
-    map.far.reserve(blocks);
-    map.mask.reserve(blocks);
-    for (std::size_t row = 0; row < rows.size(); row += DepthMap::kBits)
-        for (std::size_t column = 0; column < columns.size(); column += DepthMap::kBits) {
-            Parts parts;
-            for (std::size_t i = 0; i < parts.size(); ++i) {
-                const std::size_t y = rows[row + i / DepthMap::kBits];
-                const std::size_t x = columns[column + i % DepthMap::kBits];
-                const float value =
-                    depth[(static_cast<std::size_t>(height) - 1 - y) * static_cast<std::size_t>(width) + x];
-                parts[i] = static_cast<std::uint8_t>((static_cast<int>(2 * value * steps) + 1) / 2);
-            }
-            const Block block = block_of(parts);
-            map.near.push_back(block.near);
-            map.far.push_back(block.far);
-            map.mask.push_back(block.mask);
+    map.near.resize(blocks);
+    map.far.resize(blocks);
+    map.mask.assign(blocks, 0xffff);
+    std::vector<std::uint8_t> low(samples.columns), high(samples.columns);
+    std::vector<std::uint16_t> sum(samples.columns);
+    std::size_t block = 0;
+    for (int row = 0; row < size.rows; ++row) {
+        // Most blocks are smooth. Their columns are summed up first, many at once.
+        const auto [a, b, c, d] = samples.rows_of(row);
+        for (std::size_t x = 0; x < samples.columns; ++x) {
+            low[x] = std::min(std::min(a[x], b[x]), std::min(c[x], d[x]));
+            high[x] = std::max(std::max(a[x], b[x]), std::max(c[x], d[x]));
+            sum[x] = static_cast<std::uint16_t>(a[x] + b[x] + c[x] + d[x]);
         }
+        for (std::size_t x = 0; x < samples.columns; x += DepthMap::kBits, ++block) {
+            const int lowest = std::min(std::min(low[x], low[x + 1]), std::min(low[x + 2], low[x + 3]));
+            const int highest = std::max(std::max(high[x], high[x + 1]), std::max(high[x + 2], high[x + 3]));
+            const int all = sum[x] + sum[x + 1] + sum[x + 2] + sum[x + 3];
+            map.near[block] = map.far[block] = static_cast<std::uint8_t>((all + kParts / 2) / kParts);
+            if (highest - lowest < kEdge) continue;
+            Parts parts;
+            for (std::size_t i = 0; i < DepthMap::kBits; ++i) {
+                parts[i] = a[x + i];
+                parts[DepthMap::kBits + i] = b[x + i];
+                parts[2 * DepthMap::kBits + i] = c[x + i];
+                parts[3 * DepthMap::kBits + i] = d[x + i];
+            }
+            const std::optional<Divided> divided = divided_of(parts, lowest, highest);
+            if (!divided) continue;
+            map.near[block] = divided->near;
+            map.far[block] = divided->far;
+            map.mask[block] = divided->mask;
+        }
+    }
     return map;
 }
 
@@ -168,7 +212,7 @@ std::string encode(const DepthMap& map) {
     uLongf size = compressBound(plain.size());
     std::string bytes(size, 0);
     if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(plain.data()),
-                  plain.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
+                  plain.size(), Z_BEST_SPEED) != Z_OK)
         return {};
     bytes.resize(size);
     return bytes;

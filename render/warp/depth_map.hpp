@@ -31,7 +31,7 @@ struct DepthMapSize {
 };
 /// With blocks of so many pixels a side, or of more where there would be over kMostBlocks a side.
 DepthMapSize depth_map_size(int width, int height, double pixels);
-inline constexpr int kMostBlocks = 320;
+inline constexpr int kMostBlocks = 160;
 
 /// Chooses the size of blocks, by what maps before took, so that a map takes up to kMostOfFrame of the bytes
 /// of its frame, or kEnough bytes, below which a warp is worse than none.

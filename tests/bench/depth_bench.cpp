@@ -1,0 +1,80 @@
+// What depth for a warp takes: draws frames of a turning scene with and without it, in turns, as a server
+// draws and encodes them while the camera moves, and prints medians.
+//   bench_depth SCENE WIDTH HEIGHT ROUNDS
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <numbers>
+#include <vector>
+
+#include "engine/images.hpp"
+#include "navigation/camera_moves.hpp"
+#include "renderer/renderer.hpp"
+#include "room/room.hpp"
+#include "scenes/library.hpp"
+
+using namespace vrut;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+}
+
+struct Costs {
+    std::vector<double> draw_ms, encode_ms, bytes, depth_encode_ms, depth_bytes, blocks;
+};
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    if (count != 5) return std::cerr << "usage: bench_depth SCENE WIDTH HEIGHT ROUNDS\n", 2;
+    auto scene = server::scenes::load_scene(arguments[1], arguments[1]);
+    if (!scene) return std::cerr << scene.error() << '\n', 1;
+    plan::View view = server::room::Room(*std::move(scene), {}).visible();
+    view.width = std::stoi(arguments[2]);
+    view.height = std::stoi(arguments[3]);
+    renderer::Renderer renderer;
+    server::engine::JpegEncoder encoder;
+    warp::BlockChoice blocks;
+    Costs without, with;
+    for (int round = 0; round < std::stoi(arguments[4]); ++round)
+        for (const bool depth : {false, true}) {
+            Costs& costs = depth ? with : without;
+            view.camera = navigation::rotated(view.camera, 1, 0, true);
+            plan::RenderJob job(view);
+            job.output = plan::RenderJob::Output::ycbcr_420;
+            if (depth) job.depth_size = warp::depth_map_size(view.width, view.height, blocks.pixels());
+            Clock::time_point start = Clock::now();
+            while (!renderer.step(job)) {
+            }
+            costs.draw_ms.push_back(milliseconds_since(start));
+            start = Clock::now();
+            const std::size_t bytes = job.planes.bytes.empty() ? encoder.encode(job.image, 75, true).size()
+                                                               : encoder.encode(job.planes, 75).size();
+            costs.encode_ms.push_back(milliseconds_since(start));
+            costs.bytes.push_back(static_cast<double>(bytes));
+            if (!depth) continue;
+            start = Clock::now();
+            const std::size_t map_bytes = warp::encode(job.depth).size();
+            costs.depth_encode_ms.push_back(milliseconds_since(start));
+            costs.depth_bytes.push_back(static_cast<double>(map_bytes));
+            costs.blocks.push_back(job.depth.columns * job.depth.rows);
+            blocks.took(map_bytes, bytes);
+        }
+    const double more = median(with.draw_ms) - median(without.draw_ms);
+    std::printf("draw %.2f ms, with depth %.2f (%.2f more); JPEG %.2f ms, %.0f bytes\n",
+                median(without.draw_ms), median(with.draw_ms), more, median(without.encode_ms),
+                median(without.bytes));
+    std::printf("map %.0f blocks, %.2f ms, %.0f bytes (%.1f %%)\n", median(with.blocks),
+                median(with.depth_encode_ms), median(with.depth_bytes),
+                100 * median(with.depth_bytes) / median(with.bytes));
+}
