@@ -65,6 +65,8 @@ void describe(V& v, const Hello*) {
                "The control token or the view token, where the server has tokens.");
     v.optional("resume", &Hello::resume, Text{100},
                "A secret of the client's own, by which it gets control back after a lost connection.");
+    v.optional("depth", &Hello::depth, Flag{},
+               "Frames shall hold depth, by which the client draws them from another camera.");
 }
 
 template <class V>
@@ -723,6 +725,17 @@ struct SizeAlone : Object<Resize> {
 };
 
 template <class V>
+void describe(V& v, const FrameHeader::Depth*) {
+    v.required("frame", &FrameHeader::Depth::frame, kId, "The frame that the map was made for.");
+    v.required("columns", &FrameHeader::Depth::columns, Integer{1, kMostDepthBlocks}, "Blocks in a row.");
+    v.required("rows", &FrameHeader::Depth::rows, Integer{1, kMostDepthBlocks}, "Rows of blocks.");
+    v.required("scale", &FrameHeader::Depth::scale, Number{0, kAny.max},
+               "Reciprocal distance of the nearest surface along the view.");
+    v.required("bytes", &FrameHeader::Depth::bytes, kId,
+               "Of the map behind this file; 0: this client has it already.");
+}
+
+template <class V>
 void describe(V& v, const FrameHeader*) {
     v.required("frame", &FrameHeader::frame, kId, "Number of the frame; it rises.");
     v.required("revision", &FrameHeader::revision, kId, "Of the state that it shows.");
@@ -741,6 +754,8 @@ void describe(V& v, const FrameHeader*) {
     v.required("quality", &FrameHeader::quality, kQuality, "With what accuracy.");
     v.required("timing", &FrameHeader::timing, Object<FrameHeader::Timing>{},
                "Milliseconds that were spent.");
+    v.required("depth", &FrameHeader::depth, Object<FrameHeader::Depth>{},
+               "How far away is what it shows, for clients that asked for it.");
     v.optional("markers", &FrameHeader::markers,
                ValuesByName<Vector<glm::dvec3>>{Vector<glm::dvec3>{kAny.min, kAny.max}},
                "Where the markers' signs stand in the world, by name.");

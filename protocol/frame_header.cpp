@@ -34,22 +34,37 @@ EncodedFrameHeader::EncodedFrameHeader(const FrameHeader& header)
     : EncodedFrameHeader(without_clients_part(header)) {}
 
 EncodedFrameHeader::EncodedFrameHeader(const std::string& text) {
-    // Quotes within a name are escaped, so that neither of the two stands elsewhere.
+    // Quotes within a name are escaped, so that the member stands nowhere else.
+    const std::string depth = ",\"depth\":{", bytes = "\"bytes\":";
+    std::string none = text, known = text;
+    if (const std::size_t at = text.find(depth); at != std::string::npos) {
+        const std::size_t end = text.find('}', at), number = text.find(bytes, at) + bytes.size();
+        if (end == std::string::npos || number > end)
+            throw std::runtime_error("a frame's header has no whole 'depth'");
+        known.replace(number, text.find_first_of(",}", number) - number, "0");
+        none.erase(at, end + 1 - at);
+    }
+    parts_ = {parts_of(none), parts_of(known), parts_of(text)};
+}
+
+EncodedFrameHeader::Parts EncodedFrameHeader::parts_of(const std::string& text) {
+    // As `depth`.
     const std::string handled = "\"handled\":", since_input = ",\"sinceInputMs\":0.0";
     const std::size_t at = text.find(handled + "0,"),
                       second = text.find(since_input, std::min(at, text.size()));
     if (at == std::string::npos || second == std::string::npos)
         throw std::runtime_error("a frame's header has no 'handled' or no 'sinceInputMs'");
     const std::size_t first = at + handled.size();
-    before_handled_ = text.substr(0, first);
-    before_since_input_ = text.substr(first + 1, second - first - 1);
-    rest_ = text.substr(second + since_input.size());
+    return {text.substr(0, first), text.substr(first + 1, second - first - 1),
+            text.substr(second + since_input.size())};
 }
 
-std::string EncodedFrameHeader::with(std::int64_t handled, std::optional<double> since_input_ms) const {
-    std::string text = before_handled_ + std::to_string(handled) + before_since_input_;
+std::string EncodedFrameHeader::with(std::int64_t handled, std::optional<double> since_input_ms,
+                                     Depth depth) const {
+    const Parts& parts = parts_.at(static_cast<std::size_t>(depth));
+    std::string text = parts.before_handled + std::to_string(handled) + parts.before_since_input;
     if (since_input_ms) text += ",\"sinceInputMs\":" + dump(Json(*since_input_ms));
-    text += rest_;
+    text += parts.rest;
     if (text.size() <= kLongestComment) return text;
     return text_of(Json::parse(text));
 }

@@ -41,6 +41,7 @@ struct Hello {
     std::string name, token;
     /// A secret of the client, by which it gets control back after a lost connection; empty: none.
     std::string resume;
+    bool depth = false;  ///< its frames shall hold depth
 };
 
 /// What lies on the view's sides and covers it, in CSS pixels.

@@ -62,6 +62,7 @@ struct EdgeWanted {
     std::int64_t newer_than = 0;
     int count = 0;
     std::uint64_t since_sequence = 0;
+    bool depth = false;
     std::optional<double> bytes_per_second, round_trip_ms;  ///< of its link; none: not measured
 };
 struct EdgeSnapshotSent {
@@ -132,6 +133,7 @@ struct RoomPicture {
     ImageFormat format = ImageFormat::jpeg;
     std::string header;  ///< as of a client of whose messages it shows none
     std::int64_t header_offset = 0;
+    std::int64_t depth_frame = 0, depth_bytes = 0;  ///< the last of the bytes are a map of depth; 0: none are
     std::vector<RoomApplied> applied;
     std::optional<double> newest_input_ms;  ///< by the clock of the room's server
     double idle_since_ms = 0, sent_ms = 0;

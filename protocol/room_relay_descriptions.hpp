@@ -57,6 +57,7 @@ void describe(V& v, const EdgeWanted*) {
     v.required("count", &EdgeWanted::count, Integer{0, 1000}, "At most so many.");
     v.required("since", &EdgeWanted::since_sequence, kCount,
                "They show what its messages up to this one did.");
+    v.optional("depth", &EdgeWanted::depth, Flag{}, "With depth.");
     v.optional("bytesPerSecond", &EdgeWanted::bytes_per_second, Number{1e-3, kFastestLink}, "Of its link.");
     v.optional("roundTripMs", &EdgeWanted::round_trip_ms, Number{0, 1e9}, "Of its link.");
 }
@@ -134,6 +135,8 @@ void describe(V& v, const RoomPicture*) {
     v.required("format", &RoomPicture::format, kFormat, "Of the bytes.");
     v.required("header", &RoomPicture::header, kAnyText, "What it says about itself.");
     v.required("headerOffset", &RoomPicture::header_offset, kCount, "Where in the bytes the header goes.");
+    v.optional("depthFrame", &RoomPicture::depth_frame, kCount, "Whose map of depth follows.");
+    v.optional("depthBytes", &RoomPicture::depth_bytes, kCount, "Of that map, the last of all.");
     v.optional("applied", &RoomPicture::applied, List<Object<RoomApplied>>{{}, 0, kMostOfOne}, "By client.");
     v.optional("newestInputMs", &RoomPicture::newest_input_ms, Number{-1e15, 1e15}, "Arrival.");
     v.required("idleSinceMs", &RoomPicture::idle_since_ms, Number{-1e15, 1e15}, "The newest change.");

@@ -26,8 +26,9 @@ std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics) {
 }
 
 std::vector<std::uint8_t> EncodedPicture::header_of_file(std::int64_t handled,
-                                                         std::optional<double> since_input_ms) const {
-    const std::string text = encoded_header.with(handled, since_input_ms);
+                                                         std::optional<double> since_input_ms,
+                                                         protocol::EncodedFrameHeader::Depth which) const {
+    const std::string text = encoded_header.with(handled, since_input_ms, which);
     return format == protocol::ImageFormat::png ? png_text_chunk(text) : protocol::comment_segment(text);
 }
 
@@ -58,11 +59,11 @@ bool Encoder::is_free() const {
     return !slot_;
 }
 
-void Encoder::offer(Picture picture, scene::Image image, scene::PlanarImage planes) {
+void Encoder::offer(Picture picture, scene::Image image, scene::PlanarImage planes, warp::DepthMap depth) {
     {
         const std::lock_guard lock(mutex_);
         assert(!slot_);
-        slot_.emplace(Job{std::move(picture), std::move(image), std::move(planes)});
+        slot_.emplace(Job{std::move(picture), std::move(image), std::move(planes), std::move(depth)});
     }
     condition_.notify_one();
 }
@@ -75,6 +76,23 @@ scene::Image Encoder::take_spare() {
 void Encoder::give_spare(scene::Image image) {
     const std::lock_guard lock(mutex_);
     spare_ = std::move(image);
+}
+
+/// Refinements show what the frame before them showed.
+void Encoder::encode_depth(const warp::DepthMap& map, Picture& picture, EncodedPicture& encoded) {
+    static_assert(warp::kMostBlocks <= protocol::kMostDepthBlocks);
+    protocol::FrameHeader& header = picture.header;
+    if (map.columns > 0) {
+        const std::string bytes = warp::encode(map);
+        depth_ =
+            std::make_shared<const EncodedDepth>(EncodedDepth{header.frame, {bytes.begin(), bytes.end()}});
+        depth_header_ = {header.frame, map.columns, map.rows, map.scale,
+                         static_cast<std::int64_t>(bytes.size())};
+        picture.depth_frame = header.frame;
+    }
+    if (!depth_ || depth_->frame != picture.depth_frame) return;
+    encoded.depth = depth_;
+    header.depth = depth_header_;
 }
 
 std::shared_ptr<EncodedPicture> Encoder::encode(Job& job) {
@@ -93,8 +111,10 @@ std::shared_ptr<EncodedPicture> Encoder::encode(Job& job) {
         encoded->header_offset = protocol::comment_offset(encoded->file);
     }
     metrics_.bytes_held += encoded->file.capacity();
-    if (encoded->file.size() > kLargestPicture)
-        throw std::runtime_error("it takes " + std::to_string(encoded->file.size()) +
+    encode_depth(job.depth, picture, *encoded);
+    const std::size_t with_depth = encoded->file.size() + (encoded->depth ? encoded->depth->bytes.size() : 0);
+    if (with_depth > kLargestPicture)
+        throw std::runtime_error("it takes " + std::to_string(with_depth) +
                                  " bytes, more than a message of this server may (maxServerMessage)");
     double& encode_ms = picture.header.timing.encode_ms;
     encode_ms = std::chrono::duration<double, std::milli>(base::Clock::now() - start).count();

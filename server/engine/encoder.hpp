@@ -14,6 +14,7 @@
 #include "engine/picture.hpp"
 #include "observe/metrics.hpp"
 #include "scene/image.hpp"
+#include "warp/depth_map.hpp"
 
 namespace vrut::server::engine {
 
@@ -37,8 +38,10 @@ public:
     bool is_free() const;
     /// How long it has worked at one picture; 0 while it has none. From any thread.
     base::Clock::duration busy_for() const { return watchdog_.busy_for(); }
-    /// Only while is_free(). `planes` are encoded if there are any, else the image.
-    void offer(Picture picture, scene::Image image, scene::PlanarImage planes = {});
+    /// Only while is_free(). `planes` are encoded if there are any, else the image. A picture without a
+    /// `depth` gets the last one, if that is of its `depth_frame`.
+    void offer(Picture picture, scene::Image image, scene::PlanarImage planes = {},
+               warp::DepthMap depth = {});
     /// An image to draw into, used before where possible: its pages are there already.
     scene::Image take_spare();
     void give_spare(scene::Image image);
@@ -48,9 +51,11 @@ private:
         Picture picture;
         scene::Image image;
         scene::PlanarImage planes;
+        warp::DepthMap depth;
     };
     void run();
     std::shared_ptr<EncodedPicture> encode(Job& job);
+    void encode_depth(const warp::DepthMap& map, Picture& picture, EncodedPicture& encoded);
 
     observe::Metrics& metrics_;
     std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded_;
@@ -62,6 +67,8 @@ private:
     scene::Image spare_;
     bool closed_ = false;
     base::Watchdog watchdog_;
+    std::shared_ptr<const EncodedDepth> depth_;  // the last; of the encode thread
+    protocol::FrameHeader::Depth depth_header_;
     JpegEncoder jpeg_;    // of the encode thread; its own threads are there from the start
     std::thread thread_;  // last: it uses all of the above
 };

@@ -86,8 +86,11 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
       encoder_(
           metrics,
           [this](std::shared_ptr<const EncodedPicture> picture) {
-              const FrameEncoded encoded{picture->header.frame, picture->header.timing.encode_ms,
-                                         picture->file.size()};
+              const std::int64_t frame = picture->header.frame;
+              const std::size_t depth =
+                  picture->depth && picture->depth->frame == frame ? picture->depth->bytes.size() : 0;
+              const FrameEncoded encoded{frame, picture->header.timing.encode_ms,
+                                         picture->file.size() + depth, depth};
               callbacks_.on_encoded(std::move(picture));
               mailbox_.push(encoded);
           },
@@ -310,6 +313,7 @@ void Engine::handle(const FramesWanted& wanted) {
 
 /// The cost of an interactive frame decides on the levels of those that follow.
 void Engine::handle(const FrameEncoded& encoded) {
+    if (encoded.depth_bytes > 0) blocks_.took(encoded.depth_bytes, encoded.bytes - encoded.depth_bytes);
     const auto frame = std::find_if(in_flight_.begin(), in_flight_.end(),
                                     [&](const FrameInFlight& each) { return each.frame == encoded.frame; });
     if (frame != in_flight_.end()) {

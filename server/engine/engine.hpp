@@ -169,6 +169,7 @@ private:
     // --- pictures
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
+    bool wants_depth() const;
     bool wants_newer(const Client& client) const;
     double refined_bytes() const;
     base::Clock::duration refined_delivery(const std::optional<Link>& link) const;
@@ -272,7 +273,9 @@ private:
         plan::View visible;
         protocol::Resize view_size;
         Refinement refinement = Refinement::none;  ///< none: an interactive one
+        std::int64_t depth_frame = 0;              ///< Picture::depth_frame
     } newest_, before_newest_;
+    warp::BlockChoice blocks_;        ///< of maps of depth
     std::deque<std::int64_t> drawn_;  ///< numbers of the last frames
     std::int64_t next_frame_ = 1;
     std::deque<FrameInFlight> in_flight_;  ///< the last interactive ones

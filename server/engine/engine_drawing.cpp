@@ -48,7 +48,13 @@ void count_frame(const protocol::FrameHeader& drawn, observe::Metrics& metrics, 
 /// The newest frame shows what is to be seen now.
 bool Engine::shows_present() const {
     return newest_.frame != 0 && room_->visible() == newest_.visible &&
-           room_->view_size() == newest_.view_size;
+           room_->view_size() == newest_.view_size && (newest_.depth_frame != 0 || !wants_depth());
+}
+
+/// Returns true if frames are to hold depth. Wireframes have none: one sees through them.
+bool Engine::wants_depth() const {
+    return !room_->state().renderer.wireframe &&
+           std::ranges::any_of(clients_, [](const auto& entry) { return entry.second.wanted.depth; });
 }
 
 /// Returns true if a client may be sent more frames than there are for it. One from before its last grant
@@ -211,6 +217,10 @@ void Engine::begin_frame(Refinement refinement) {
                                      begin_job(std::move(view), refinement)});
         frame_->job.interactive = !still;
         frame_->job.output = output_of(quality);
+        const bool known = newest_.depth_frame != 0 && shows_present();
+        if (known) frame_->picture.depth_frame = newest_.depth_frame;
+        if (!known && wants_depth())
+            frame_->job.depth_size = warp::depth_map_size(size.width, size.height, blocks_.pixels());
     } catch (const std::bad_alloc&) {
         draw_smaller({visible, view_size}, size, "there is no memory to draw it");
     }
@@ -243,8 +253,10 @@ void Engine::finish_frame() {
         // It shows what came meanwhile, too: that changed nothing.
         frame.picture.applied = applied();
     }
+    warp::DepthMap depth = std::exchange(frame.job.depth, {});
+    if (depth.columns > 0) frame.picture.depth_frame = header.frame;
     before_newest_ = newest_;
-    newest_ = {header.frame, frame.visible, frame.view_size, frame.refinement};
+    newest_ = {header.frame, frame.visible, frame.view_size, frame.refinement, frame.picture.depth_frame};
     drawn_.push_back(header.frame);
     if (drawn_.size() > kFramesRemembered) drawn_.pop_front();
     const plan::FrameStats& stats = frame.job.stats;
@@ -256,7 +268,8 @@ void Engine::finish_frame() {
                               stats.render_ms + stats.readback_ms});
         if (in_flight_.size() > kFramesRemembered) in_flight_.pop_front();
     }
-    encoder_.offer(std::move(frame.picture), std::move(frame.job.image), std::move(frame.job.planes));
+    encoder_.offer(std::move(frame.picture), std::move(frame.job.image), std::move(frame.job.planes),
+                   std::move(depth));
     refining_.reset();
     if (frame.job.keep == plan::RenderJob::Keep::samples && frame.refinement != Refinement::sharp &&
         stats.substitutes == 0)

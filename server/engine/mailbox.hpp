@@ -55,6 +55,7 @@ struct FramesWanted {
     int count = 0;                     ///< at most so many; 0: none now
     std::uint64_t since_sequence = 0;  ///< they show what its messages up to this one did
     std::optional<Link> link = {};     ///< none: not measured yet
+    bool depth = false;                ///< with depth
     bool operator==(const FramesWanted&) const = default;
 };
 
@@ -62,7 +63,8 @@ struct FramesWanted {
 struct FrameEncoded {
     std::int64_t frame = 0;
     double encode_ms = 0;
-    std::size_t bytes = 0;
+    std::size_t bytes = 0;        ///< with those of its depth
+    std::size_t depth_bytes = 0;  ///< 0: it was not made for this one
 };
 
 /// A picture could not be encoded.

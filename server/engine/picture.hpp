@@ -26,16 +26,25 @@ struct Picture {
     base::Clock::time_point idle_since{};  ///< of one that may wait: the newest change of what it shows
     protocol::ImageFormat format = protocol::ImageFormat::jpeg;
     std::string client = {};  ///< of a snapshot: who asked for it
+    /// The frame whose depth is this one's, too; 0: none is known.
+    std::int64_t depth_frame = 0;
+};
+
+/// A map of depth as frames hold it.
+struct EncodedDepth {
+    std::int64_t frame = 0;  ///< for which it was made
+    std::vector<std::uint8_t> bytes;
 };
 
 struct EncodedPicture : Picture {
     std::vector<std::uint8_t> file;
     std::size_t header_offset = 0;  ///< where the header of each client goes
     protocol::EncodedFrameHeader encoded_header = {};
+    std::shared_ptr<const EncodedDepth> depth = {};  ///< null: none
 
-    /// The header as it stands in the file, at header_offset, with these two of a client.
-    std::vector<std::uint8_t> header_of_file(std::int64_t handled,
-                                             std::optional<double> since_input_ms) const;
+    /// The header as it stands in the file, at header_offset, with these of a client.
+    std::vector<std::uint8_t> header_of_file(std::int64_t handled, std::optional<double> since_input_ms,
+                                             protocol::EncodedFrameHeader::Depth which) const;
 };
 
 }  // namespace vrut::server::engine

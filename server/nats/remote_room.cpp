@@ -125,6 +125,8 @@ void RemoteRoom::want_for_viewers() {
         viewer_ = found->first;
     }
     engine::FramesWanted all{viewer_, 0, 0, clients_.at(viewer_).wanted.since_sequence, {}};
+    all.depth = std::ranges::any_of(
+        clients_, [](const auto& entry) { return is_viewer(entry.second.who) && entry.second.wanted.depth; });
     if (!viewers_wanting_.empty()) {
         all.newer_than = viewers_wanting_.rbegin()->first;
         all.count = 1;
@@ -135,7 +137,8 @@ void RemoteRoom::want_for_viewers() {
 }
 
 void RemoteRoom::say_wanted(const engine::FramesWanted& wanted) {
-    protocol::EdgeWanted said{wanted.client, wanted.newer_than, wanted.count, wanted.since_sequence, {}, {}};
+    protocol::EdgeWanted said{
+        wanted.client, wanted.newer_than, wanted.count, wanted.since_sequence, wanted.depth, {}, {}};
     if (wanted.link) {
         said.bytes_per_second = std::min(wanted.link->bytes_per_second, protocol::kFastestLink);
         said.round_trip_ms = std::chrono::duration<double, std::milli>(wanted.link->round_trip).count();
@@ -397,6 +400,12 @@ std::shared_ptr<const engine::EncodedPicture> RemoteRoom::picture_of(const proto
     } catch (const std::exception& error) {
         observe::log_warning("invalid_relay", {{"room", room_}, {"reason", error.what()}});
         return nullptr;
+    }
+    if (said.depth_bytes > 0 && static_cast<std::size_t>(said.depth_bytes) <= bytes.size()) {
+        const auto depth = bytes.end() - said.depth_bytes;
+        picture->depth = std::make_shared<const engine::EncodedDepth>(
+            engine::EncodedDepth{said.depth_frame, {depth, bytes.end()}});
+        bytes.erase(depth, bytes.end());
     }
     picture->file = std::move(bytes);
     metrics_.bytes_held += picture->file.capacity();

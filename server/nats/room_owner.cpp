@@ -196,8 +196,15 @@ std::optional<Packet> RoomOwner::picture_packet(const engine::EncodedPicture& pi
     if (picture.newest_input) said.newest_input_ms = ms_of(*picture.newest_input);
     said.idle_since_ms = ms_of(picture.idle_since);
     said.sent_ms = ms_of(base::Clock::now());
+    if (picture.depth) {
+        said.depth_frame = picture.depth->frame;
+        said.depth_bytes = static_cast<std::int64_t>(picture.depth->bytes.size());
+    }
     auto packet = packet_of(std::move(said));
-    if (packet) packet->bytes = picture.file;
+    if (!packet) return packet;
+    packet->bytes = picture.file;
+    if (picture.depth)
+        packet->bytes.insert(packet->bytes.end(), picture.depth->bytes.begin(), picture.depth->bytes.end());
     return packet;
 }
 
@@ -341,7 +348,8 @@ void RoomOwner::handle(const std::string& edge, const protocol::EdgeSaid& said) 
 
 void RoomOwner::handle(const std::string& edge, const protocol::EdgeWanted& wanted) {
     if (!find(edge, wanted.client)) return;
-    engine::FramesWanted frames{wanted.client, wanted.newer_than, wanted.count, wanted.since_sequence, {}};
+    engine::FramesWanted frames{wanted.client, wanted.newer_than, wanted.count, wanted.since_sequence, {},
+                                wanted.depth};
     if (wanted.bytes_per_second && wanted.round_trip_ms)
         frames.link = engine::Link{*wanted.bytes_per_second,
                                    std::chrono::duration_cast<base::Clock::duration>(

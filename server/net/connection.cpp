@@ -261,6 +261,7 @@ void Connection::join(const std::string& client, protocol::Role role, const prot
     hello_deadline_.cancel();
     role_ = role;
     client_ = client;
+    wants_depth_ = hello.depth;
     room_->clients[client_] = shared_from_this();
     if (!room_->loads) loading_ = room_->loading;  // over before it came
     ++registry_.metrics->clients_joined;

@@ -77,12 +77,14 @@ private:
     void send_frame();
     void send_snapshot();
     void send_picture(std::optional<double> since_input_ms);
+    bool sends_depth_of(const engine::EncodedPicture& picture) const;
+    std::size_t bytes_of(const engine::EncodedPicture& picture) const;
     void send_update(base::Clock::time_point now);
     void send_document();
     void send_answer();
     void send_text(Text text);
     void send_ping(base::Clock::time_point now);
-    void write(const std::array<boost::asio::const_buffer, 3>& buffers);
+    void write(const std::array<boost::asio::const_buffer, 4>& buffers);
     void on_written(boost::beast::error_code error);
     Traffic& traffic() { return boost::beast::get_lowest_layer(socket_).rate_policy(); }
     /// When the first bytes of a message came that is not all there.
@@ -120,7 +122,9 @@ private:
     std::deque<Answer> answers_;
     std::size_t answer_bytes_ = 0;  // of answers_
     std::int64_t last_frame_ = 0;
-    std::int64_t handled_ = 0;  // the highest message id that a picture showed it
+    bool wants_depth_ = false;
+    std::int64_t depth_frame_ = 0;  // whose depth it last got
+    std::int64_t handled_ = 0;      // the highest message id that a picture showed it
     std::deque<std::shared_ptr<const engine::EncodedPicture>> snapshots_;
     Text stats_, loading_;  // that it last got
 

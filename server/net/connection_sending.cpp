@@ -46,8 +46,8 @@ void Connection::on_grant(const protocol::FrameGrant& grant, std::optional<std::
 /// Tells the engine what may be sent, where that has changed.
 void Connection::ask_for_frames(base::Clock::time_point now) {
     const std::int64_t known = holds_in_vain(now) ? room_->newest->header.frame : last_frame_;
-    const engine::FramesWanted wanted{client_, known, flow_.frames_allowed(now), granted_at_,
-                                      flow_.link(now)};
+    const engine::FramesWanted wanted{client_,     known,           flow_.frames_allowed(now),
+                                      granted_at_, flow_.link(now), wants_depth_};
     if (wanted == wanted_) return;
     const bool matters = wanted.count > 0 || wanted_.count > 0;
     wanted_ = wanted;
@@ -83,7 +83,7 @@ bool Connection::has_newer_frame() const {
 
 /// When the newest frame may be sent, as far as the time decides for which the view has been idle.
 base::Clock::time_point Connection::newest_from(base::Clock::time_point now) const {
-    return flow_.may_send_from(room_->newest->file.size(), room_->newest->idle_since, now);
+    return flow_.may_send_from(bytes_of(*room_->newest), room_->newest->idle_since, now);
 }
 
 bool Connection::frame_is_due(base::Clock::time_point now) const {
@@ -201,10 +201,10 @@ void Connection::send_frame() {
     ++registry_.metrics->frames_sent;
     observe::log_debug("frame_sent", {{"client", client_},
                                       {"frame", last_frame_},
-                                      {"bytes", picture_->file.size()},
+                                      {"bytes", bytes_of(*picture_)},
                                       {"ms", since_input_ms.value_or(0)}});
     const base::Clock::time_point now = base::Clock::now();
-    flow_.sent_frame(last_frame_, picture_->file.size(), now);
+    flow_.sent_frame(last_frame_, bytes_of(*picture_), now);
     send_picture(since_input_ms);
     ask_for_frames(now);
 }
@@ -220,13 +220,29 @@ void Connection::send_snapshot() {
     send_picture(picture_->header.timing.since_input_ms);
 }
 
+/// A client keeps the depth that it has for the refinements of a frame.
+bool Connection::sends_depth_of(const engine::EncodedPicture& picture) const {
+    return wants_depth_ && picture.depth && picture.depth->frame != depth_frame_;
+}
+
+std::size_t Connection::bytes_of(const engine::EncodedPicture& picture) const {
+    return picture.file.size() + (sends_depth_of(picture) ? picture.depth->bytes.size() : 0);
+}
+
 void Connection::send_picture(std::optional<double> since_input_ms) {
-    header_ = picture_->header_of_file(handled_, since_input_ms);
+    using Depth = protocol::EncodedFrameHeader::Depth;
+    const bool sends_depth = sends_depth_of(*picture_);
+    header_ = picture_->header_of_file(handled_, since_input_ms,
+                                       sends_depth    ? Depth::sent
+                                       : wants_depth_ ? Depth::known
+                                                      : Depth::none);
+    if (sends_depth) depth_frame_ = picture_->depth->frame;
     const auto& file = picture_->file;
     const std::size_t cut = picture_->header_offset;
     socket_.binary(true);
     write({boost::asio::buffer(file.data(), cut), boost::asio::buffer(header_),
-           boost::asio::buffer(file.data() + cut, file.size() - cut)});
+           boost::asio::buffer(file.data() + cut, file.size() - cut),
+           sends_depth ? boost::asio::buffer(picture_->depth->bytes) : boost::asio::const_buffer()});
 }
 
 /// No client gets a message longer than `welcome` says.
@@ -245,7 +261,7 @@ void Connection::send_text(Text text) {
 }
 
 // One type of buffers for all: Beast's write operation takes seconds to compile for each.
-void Connection::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
+void Connection::write(const std::array<boost::asio::const_buffer, 4>& buffers) {
     writing_ = true;
     const std::size_t bytes = boost::asio::buffer_size(buffers);
     registry_.metrics->bytes_sent += bytes;

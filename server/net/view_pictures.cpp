@@ -8,7 +8,8 @@ namespace {
 
 std::string whole_file(const engine::EncodedPicture& picture) {
     const std::vector<std::uint8_t> header =
-        picture.header_of_file(picture.header.handled, picture.header.timing.since_input_ms);
+        picture.header_of_file(picture.header.handled, picture.header.timing.since_input_ms,
+                               protocol::EncodedFrameHeader::Depth::none);
     const auto cut = picture.file.begin() + static_cast<std::ptrdiff_t>(picture.header_offset);
     std::string file;
     file.reserve(picture.file.size() + header.size());

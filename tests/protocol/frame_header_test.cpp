@@ -7,6 +7,7 @@
 using namespace vrut::protocol;
 
 TEST_CASE("a header that is encoded once says the same as one that is encoded for its client") {
+    using Depth = EncodedFrameHeader::Depth;
     FrameHeader header;
     header.markers["\"handled\":0,"] = {1, 2, 3};
     header.camera.pose.name = ",\"sinceInputMs\":0.0";
@@ -14,9 +15,17 @@ TEST_CASE("a header that is encoded once says the same as one that is encoded fo
         const EncodedFrameHeader encoded(header);
         header.handled = handled;
         header.timing.since_input_ms = since_input_ms;
-        CHECK(encoded.with(handled, since_input_ms) == encode(header));
+        CHECK(encoded.with(handled, since_input_ms, Depth::sent) == encode(header));
+        FrameHeader other = header;
+        if (other.depth) other.depth->bytes = 0;
+        CHECK(encoded.with(handled, since_input_ms, Depth::known) == encode(other));
+        other.depth.reset();
+        CHECK(encoded.with(handled, since_input_ms, Depth::none) == encode(other));
+        CHECK(EncodedFrameHeader(encoded.text()).text() == encoded.text());
     };
     both(0, {});
+    header.depth = FrameHeader::Depth{4, 160, 90, 0.25, 5119};
+    header.camera.pose.name = ",\"depth\":{\"bytes\":7}";
     both(17, 2.5);
     both(kMaxInteger, 0);
     header.camera.pose.name =

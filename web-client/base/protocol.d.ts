@@ -78,6 +78,8 @@ export type ClientFrame = {
 };
 
 export type ClientHello = {
+  /** Frames shall hold depth, by which the client draws them from another camera. */
+  depth?: boolean;
   /** Asks for exactly one answer, which has the same `id`. It rises. */
   id?: number;
   /** How others see the client; of two of the same name one gets a number, as "iPad 2". */
@@ -635,6 +637,19 @@ export type FrameHeader = {
     up: Array<number>;
     /** From the world to the camera's space. */
     viewMatrix: Array<number>;
+  };
+  /** How far away is what it shows, for clients that asked for it. */
+  depth?: {
+    /** Of the map behind this file; 0: this client has it already. */
+    bytes: number;
+    /** Blocks in a row. */
+    columns: number;
+    /** The frame that the map was made for. */
+    frame: number;
+    /** Rows of blocks. */
+    rows: number;
+    /** Reciprocal distance of the nearest surface along the view. */
+    scale: number;
   };
   /** Number of the frame; it rises. */
   frame: number;

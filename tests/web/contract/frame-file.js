@@ -10,7 +10,6 @@ export function readFrame(bytes) {
 
 function readJpeg(bytes) {
   assert.equal(bytes.readUInt16BE(0), 0xffd8, 'a JPEG file begins with SOI');
-  assert.equal(bytes.readUInt16BE(bytes.length - 2), 0xffd9, 'a JPEG file ends with EOI');
   const frame = { format: 'jpeg' };
   for (let at = 2, segment = 0; ; ++segment) {
     const marker = bytes.readUInt16BE(at);
@@ -26,7 +25,11 @@ function readJpeg(bytes) {
       frame.header = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(body));
     }
     if (marker === 0xffc0 || marker === 0xffc1 || marker === 0xffc2) Object.assign(frame, readSize(body));
-    if (marker === 0xffda) return frame;
+    if (marker === 0xffda) {
+      const end = bytes.length - (frame.header.depth?.bytes ?? 0);
+      assert.equal(bytes.readUInt16BE(end - 2), 0xffd9, 'a JPEG file ends with EOI');
+      return { ...frame, map: bytes.subarray(end) };
+    }
     at += 2 + size;
   }
 }

@@ -2,11 +2,12 @@
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
+import { inflateSync } from 'node:zlib';
 import { ContractClient } from './contract-client.js';
 import { near, nearCamera } from './numbers.js';
 import { schemaTest } from './schema.js';
 import { Server } from './server.js';
-import { pixelsNow, POSE, steering, VIEW } from './stage.js';
+import { pixelsNow, POSE, SEEN, steering, VIEW } from './stage.js';
 
 const server = await Server.start();
 after(() => server.stop());
@@ -252,6 +253,84 @@ describe('levels of accuracy', () => {
     const [mine, its] = await Promise.all([client.frame(done), watcher.frame(done)]);
     assert.equal(its.header.frame, mine.header.frame);
     assert.deepEqual(its.bytes.subarray(-500), mine.bytes.subarray(-500));
+  });
+});
+
+describe('depth', () => {
+  /** The newest frame that shows what is to be seen now at full accuracy. */
+  async function sharp(client) {
+    await settled(client);
+    const frame = client.frames.at(-1);
+    assert.equal(frame.header.quality.samples, 16);
+    return frame;
+  }
+
+  /** The map's `far`, and which blocks have an edge; see FRAMES.md. */
+  function blocksOf({ header: { depth }, map }) {
+    const { columns, rows } = depth;
+    const bytes = inflateSync(map);
+    const blocks = columns * rows;
+    const far = [];
+    for (let i = 0; i < blocks; ++i) {
+      const [left, upper] = [far[i - 1], far[i - columns]];
+      let predicted = i === 0 ? 0 : i < columns ? left : upper;
+      if (i > columns && i % columns > 0) {
+        predicted = [left, upper, left + upper - far[i - columns - 1]].sort((a, b) => a - b)[1];
+      }
+      far.push((predicted + (bytes[i] % 2 ? -(bytes[i] + 1) / 2 : bytes[i] / 2)) & 255);
+    }
+    const edges = far.map((_, i) => (bytes[blocks + (i >> 3)] >> (i & 7)) & 1);
+    const count = edges.filter(Boolean).length;
+    assert.equal(bytes.length, blocks + Math.ceil(blocks / 8) + 3 * count);
+    return { far, edges };
+  }
+
+  test('who asks for it gets it once for each view, and nobody else', async (t) => {
+    const client = await steering(t, server);
+    const other = await ContractClient.join(t, server, { role: 'view', depth: true });
+    client.send({ type: 'frame' });
+    const first = await sharp(other);
+    assert.ok(first.header.depth.frame > 0);
+    assert.equal(other.frames.filter(({ header }) => header.depth?.bytes > 0).length, 1, 'once for a view');
+    assert.ok(client.frames.every(({ header, map }) => !header.depth && map.length === 0));
+
+    const count = other.frames.length;
+    await client.ask({ type: 'navigate', rotate: [5, 0] });
+    const next = await sharp(other);
+    assert.ok(next.header.depth.frame > first.header.depth.frame);
+    const withMap = other.frames.slice(count).filter(({ header }) => header.depth?.bytes > 0);
+    assert.ok(withMap.every(({ header }) => header.depth.frame === header.frame), 'moving frames have their own');
+    assert.ok(withMap.length > 0);
+  });
+
+  test('it tells how far away is what is seen', async (t) => {
+    const client = await steering(t, server);
+    const other = await ContractClient.join(t, server, { role: 'view', depth: true });
+    await sharp(other);
+    const frame = other.frames.find(({ header }) => header.depth?.bytes > 0);
+    const { columns, rows, scale } = frame.header.depth;
+    const { far } = blocksOf(frame);
+    const distanceAt = ([x, y]) => {
+      const block = Math.floor(y / VIEW.height * rows) * columns + Math.floor(x / VIEW.width * columns);
+      return 255 / (far[block] * scale);
+    };
+    // The eye is at z = 8; the door lies at z = 0, the pane before it at 1, and the wall behind it at -1.
+    for (const [place, distance] of [[SEEN.door, 8], [SEEN.pane, 7], [SEEN.wall, 9]]) {
+      near(distanceAt(place), distance, 'distance', 0.005);
+    }
+    assert.equal(distanceAt(SEEN.nothing), Infinity);
+    await client.barrier();
+  });
+
+  test('wireframes and snapshots have none', async (t) => {
+    const client = await steering(t, server);
+    const other = await ContractClient.join(t, server, { role: 'control', depth: true });
+    const { header } = await other.ask({ type: 'snapshot', width: 200, height: 150, format: 'jpeg' });
+    assert.equal(header.depth, undefined);
+    await client.patch({ renderer: { wireframe: true } });
+    assert.equal((await sharp(other)).header.depth, undefined);
+    await client.patch({ renderer: null });
+    assert.ok((await sharp(other)).header.depth);
   });
 });
 
