@@ -12,7 +12,7 @@ const MS_BETWEEN_EVENTS = 4;
 /**
  * The gestures of tests/data/gestures, which the server's tests read, too: in a `view` that is shown in a `box` of the
  * window, from `camera`, a browser dispatches `events`, of which `messages` are made, and after each of these the
- * camera is one of `cameras`.
+ * camera is one of `cameras`. Within the radius of a `seat` from its eye drags look around.
  */
 export const gestures = readdirSync(FOLDER).map((name) => ({ name, ...JSON.parse(readFileSync(new URL(name, FOLDER))) }));
 

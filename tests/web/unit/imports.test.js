@@ -8,9 +8,10 @@ const PAGE = new URL('../../../web-client/', import.meta.url);
 const MAY_IMPORT = {
   base: [],
   connection: ['base'],
-  stage: ['base', 'connection'],
+  navigation: ['base'],
+  stage: ['base', 'connection', 'navigation'],
   panels: ['base', 'connection'],
-  '.': ['base', 'connection', 'stage', 'panels'],
+  '.': ['base', 'connection', 'navigation', 'stage', 'panels'],
 };
 
 const modules = readdirSync(PAGE, { recursive: true }).filter((name) => name.endsWith('.js'));

@@ -102,7 +102,10 @@ class Follower {
 }
 
 /** Keys, and the drags of other styles, wait for their pictures. */
-const LEFT_TO_PICTURES = new Set(['keys.json', 'maya.json', 'catia.json']);
+const LEFT_TO_PICTURES = new Set([
+  'keys.json', 'arrow-keys.json', 'maya.json', 'catia.json', 'buttons-unseen.json', 'cinema4d.json',
+  'three-buttons.json',
+]);
 /** The wheel's last but one message zooms to a limit, which is not predicted; so many are. */
 const PREDICTED = { 'wheel.json': 9 };
 

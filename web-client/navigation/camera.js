@@ -1,0 +1,72 @@
+import { add, cross, distance, dot, isFinite, length, normalize, scale, subtract } from './vectors.js';
+
+/** @import { Camera as CameraState } from '../base/protocol.js' */
+
+/**
+ * @typedef {Pick<CameraState, 'eye'|'focus'|'up'|'center'|'fov'>} Camera `up` is unit and at right angles to the view;
+ *   `fov` is vertical, in degrees
+ */
+
+export const RADIANS_PER_DEGREE = Math.PI / 180;
+/** The scene's vertical. */
+export const VERTICAL = [0, 1, 0];
+
+/** @param {Camera} camera */
+export const focusDistance = ({ eye, focus }) => distance(eye, focus);
+
+/** @param {Camera} camera */
+export const viewDirection = ({ eye, focus }) => normalize(subtract(focus, eye));
+
+/** @param {Camera} camera */
+export const rightDirection = (camera) => normalize(cross(viewDirection(camera), camera.up));
+
+/** Of what a camera sees in the plane one unit before the eye. */
+export const tangentHeight = ({ fov }) => 2 * Math.tan((fov * RADIANS_PER_DEGREE) / 2);
+
+/**
+ * False where eye and focus are closer than 10⁻⁹ of `sceneRadius`, `up` is zero or lies along the view, or anything is
+ * not finite.
+ *
+ * @param {Camera} camera
+ * @param {number} sceneRadius
+ */
+export function isValidPose(camera, sceneRadius) {
+  const { eye, focus, up, center } = camera;
+  if (![eye, focus, up, center].every(isFinite)) return false;
+  const away = focusDistance(camera);
+  if (!Number.isFinite(away) || away === 0 || away < 1e-9 * sceneRadius) return false;
+  const upLength = length(up);
+  if (!Number.isFinite(upLength) || upLength === 0) return false;
+  return length(cross(viewDirection(camera), scale(up, 1 / upLength))) > 1e-9;
+}
+
+/**
+ * The same camera with `up` at right angles to the view and unit; the pose must be valid.
+ *
+ * @template {Camera} T
+ * @param {T} camera
+ * @returns {T}
+ */
+export function withOrthogonalUp(camera) {
+  const view = viewDirection(camera);
+  const up = normalize(camera.up);
+  if (Math.abs(dot(view, up)) < 1e-15 && Math.abs(length(camera.up) - 1) < 1e-15) return camera;
+  // Two products stay orthogonal where up lies close to the view and a difference would not.
+  return { ...camera, up: normalize(cross(cross(view, up), view)) };
+}
+
+/**
+ * Unit direction from the eye, in world space, through a point of a view of `aspect`, its width / height: x and y from
+ * −1 (left, top) to 1 (right, bottom).
+ *
+ * @param {Camera} camera
+ * @param {number} aspect
+ * @param {number} x
+ * @param {number} y
+ */
+export function directionThrough(camera, aspect, x, y) {
+  const top = tangentHeight(camera) / 2;
+  const view = viewDirection(camera);
+  const right = rightDirection(camera);
+  return normalize(add(add(view, scale(right, x * top * aspect)), scale(cross(right, view), -y * top)));
+}
