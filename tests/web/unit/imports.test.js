@@ -8,9 +8,10 @@ const PAGE = new URL('../../../web-client/', import.meta.url);
 const MAY_IMPORT = {
   base: [],
   connection: ['base'],
-  stage: ['base', 'connection'],
+  warp: ['base'],
+  stage: ['base', 'connection', 'warp'],
   panels: ['base', 'connection'],
-  '.': ['base', 'connection', 'stage', 'panels'],
+  '.': ['base', 'connection', 'warp', 'stage', 'panels'],
 };
 
 const modules = readdirSync(PAGE, { recursive: true }).filter((name) => name.endsWith('.js'));
