@@ -9,9 +9,10 @@ const MAY_IMPORT = {
   base: [],
   connection: ['base'],
   navigation: ['base'],
-  stage: ['base', 'connection', 'navigation'],
+  warp: ['base'],
+  stage: ['base', 'connection', 'navigation', 'warp'],
   panels: ['base', 'connection'],
-  '.': ['base', 'connection', 'navigation', 'stage', 'panels'],
+  '.': ['base', 'connection', 'navigation', 'warp', 'stage', 'panels'],
 };
 
 const modules = readdirSync(PAGE, { recursive: true }).filter((name) => name.endsWith('.js'));

@@ -1,0 +1,117 @@
+/** @import { DepthMap, Layers } from './depth-map.js' */
+import { BITS, isStep } from './depth-map.js';
+
+/** Places in a block are told in as many parts of its side: those of its middle, and of the middles of its parts. */
+export const PLACES = 2 * BITS;
+/** Of a number of 32 bits. */
+export const PLACE_BITS = 12;
+
+/** Triangles of the grid, three corners each, in an array that serves again. */
+export class Triangles {
+  /** @type {Uint16Array|Uint32Array} */
+  indices = new Uint16Array(0);
+  length = 0;
+
+  /** Forgets all. 0xffff would begin a new primitive (OpenGL ES 3.0, section 2.8.1). */
+  clear(corners, most) {
+    const Indices = corners <= 0xffff ? Uint16Array : Uint32Array;
+    if (this.indices.length < most || !(this.indices instanceof Indices)) this.indices = new Indices(most);
+    this.length = 0;
+  }
+
+  add(a, b, c) {
+    this.indices[this.length] = a;
+    this.indices[this.length + 1] = b;
+    this.indices[this.length + 2] = c;
+    this.length += 3;
+  }
+}
+
+/**
+ * The triangles of each layer. The grid's corners are the blocks' centres, and a row and a column beyond each side, row
+ * by row. No triangle of the layers near and far spans a step; in the layer hidden all do, and the farthest of their
+ * corners is the last.
+ *
+ * @param {DepthMap} map
+ * @param {Layers} layers
+ * @param {{near: Triangles, far: Triangles, hidden: Triangles}} triangles
+ */
+export function buildTriangles({ columns, rows, far }, layers, triangles) {
+  const width = columns + 2;
+  const cells = (columns + 1) * (rows + 1);
+  for (const list of [triangles.near, triangles.far, triangles.hidden]) list.clear(width * (rows + 2), 6 * cells);
+  for (let row = 0; row <= rows; row += 1) {
+    const upper = Math.max(row - 1, 0) * columns;
+    const lower = Math.min(row, rows - 1) * columns;
+    for (let column = 0; column <= columns; column += 1) {
+      const left = Math.max(column - 1, 0);
+      const right = Math.min(column, columns - 1);
+      const a = upper + left;
+      const b = upper + right;
+      const c = lower + left;
+      const d = lower + right;
+      const corner = row * width + column;
+      addSurface(triangles.near, layers.near, corner, width, a, b, c, d);
+      if (hasTwo(layers, a) || hasTwo(layers, b) || hasTwo(layers, c) || hasTwo(layers, d)) {
+        addSurface(triangles.far, layers.far, corner, width, a, b, c, d);
+      }
+      if (!isStep(Math.min(far[a], far[b], far[c], far[d]), Math.max(far[a], far[b], far[c], far[d]))) continue;
+      addHidden(triangles.hidden, corner, corner + 1, corner + width, far[a], far[b], far[c]);
+      addHidden(triangles.hidden, corner + width, corner + 1, corner + width + 1, far[c], far[b], far[d]);
+    }
+  }
+}
+
+function hasTwo({ near, far }, block) {
+  return near[block] !== far[block];
+}
+
+function addSurface(list, steps, corner, width, a, b, c, d) {
+  const low = Math.min(steps[b], steps[c]);
+  const high = Math.max(steps[b], steps[c]);
+  const below = corner + width;
+  if (!isStep(Math.min(steps[a], low), Math.max(steps[a], high))) list.add(corner, corner + 1, below);
+  if (!isStep(Math.min(steps[d], low), Math.max(steps[d], high))) list.add(below, corner + 1, below + 1);
+}
+
+function addHidden(list, a, b, c, first, second, third) {
+  const least = Math.min(first, second, third);
+  if (!isStep(least, Math.max(first, second, third))) return;
+  if (first === least) list.add(b, c, a);
+  else if (second === least) list.add(c, a, b);
+  else list.add(a, b, c);
+}
+
+/**
+ * What the shaders read of each block, two numbers of 32 bits. The first: `near` and `far` of the layers in 8 bits
+ * each, and `mask`. The second: `far` of the map in 8 bits, and where the frame shows what lies behind the block, in
+ * PLACES parts of a block, from the left in PLACE_BITS and from the top in as many.
+ *
+ * @param {DepthMap} map
+ * @param {Layers} layers
+ * @param {Uint32Array} into
+ */
+export function packBlocks(map, { near, far, mask, farthest }, into) {
+  const { columns } = map;
+  for (let i = 0; i < near.length; i += 1) {
+    into[2 * i] = near[i] | (far[i] << 8) | (mask[i] << 16);
+    const behind = farthest[i];
+    const row = Math.floor(behind / columns);
+    // Of a block, or of a part of it that shows what is farther.
+    let x = PLACES / 2;
+    let y = PLACES / 2;
+    if (map.near[behind] !== map.far[behind]) {
+      const bit = Math.min(countOnes(map.mask[behind]), BITS * BITS - 1);
+      x = 2 * (bit % BITS) + 1;
+      y = 2 * Math.floor(bit / BITS) + 1;
+    }
+    x += PLACES * (behind - row * columns);
+    y += PLACES * row;
+    into[2 * i + 1] = map.far[i] | (x << 8) | (y << (8 + PLACE_BITS));
+  }
+}
+
+/** Of the bits from the lowest, until one is not set. */
+function countOnes(mask) {
+  return 31 - Math.clz32(~mask & (mask + 1));
+}
