@@ -482,6 +482,12 @@ void describe(V& v, const SceneState::Bounds*) {
 }
 
 template <class V>
+void describe(V& v, const SceneState::Seat*) {
+    v.fixed("eye", &SceneState::Seat::eye, kPosition, "The middle of where the eye is then.");
+    v.fixed("radius", &SceneState::Seat::radius, kDuration, "How far from it the eye may be.");
+}
+
+template <class V>
 void describe(V& v, const SceneState*) {
     v.fixed("name", &SceneState::name, kName, "The scene's title.");
     v.fixed("file", &SceneState::file, Text{kMaxSceneName}, "The name by which `open` takes it.");
@@ -492,6 +498,8 @@ void describe(V& v, const SceneState*) {
     v.fixed("geometries", &SceneState::geometries, kId, "Number of geometries.");
     v.fixed("triangles", &SceneState::triangles, kId, "Number of triangles.");
     v.fixed("bounds", &SceneState::bounds, Object<SceneState::Bounds>{}, "The scene's box in the world.");
+    v.fixed("seats", &SceneState::seats, List<Object<SceneState::Seat>>{{}, 0, kMaxInteger},
+            "Where drags that rotate turn the view about the eye.");
     v.fixed("notices", &SceneState::notices, List<Defined<Object<Notice>>>{kNotice, 0, kMaxInteger},
             "What to know of it, as what of the file is not shown.");
 }
@@ -731,6 +739,8 @@ void describe(V& v, const FrameHeader::Depth*) {
     v.required("rows", &FrameHeader::Depth::rows, Integer{1, kMostDepthBlocks}, "Rows of blocks.");
     v.required("scale", &FrameHeader::Depth::scale, Number{0, kAny.max},
                "Reciprocal distance of the nearest surface along the view.");
+    v.required("backgroundTurns", &FrameHeader::Depth::background_turns, Flag{},
+               "What is infinitely far turns with the camera; else it stays where it is in the image.");
     v.required("bytes", &FrameHeader::Depth::bytes, kId,
                "Of the map behind this file; 0: this client has it already.");
 }

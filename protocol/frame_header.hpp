@@ -35,7 +35,8 @@ struct FrameHeader {
         std::int64_t frame = 0;  ///< for which it was made
         int columns = 0, rows = 0;
         double scale = 0;
-        std::int64_t bytes = 0;  ///< behind the file
+        bool background_turns = false;  ///< with the camera
+        std::int64_t bytes = 0;         ///< behind the file
     };
     std::int64_t frame = 0, revision = 0, handled = 0;
     std::optional<std::int64_t> snapshot;  ///< id of the message that asked for it

@@ -55,6 +55,11 @@ struct SceneState {                      // r
     struct Bounds {
         glm::dvec3 min{0}, max{0};
     } bounds;
+    struct Seat {
+        glm::dvec3 eye{0};
+        double radius = 0;
+    };
+    std::vector<Seat> seats;
     std::vector<Notice> notices;
 };
 

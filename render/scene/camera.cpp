@@ -109,14 +109,20 @@ std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node) {
     return with_orthogonal_up(camera);
 }
 
-bool looks_around_from(const PlacedScene& placed, const glm::dvec3& eye) {
+std::vector<Seat> seats(const PlacedScene& placed) {
+    std::vector<Seat> found;
     for (const Index node : placed.scene->looking_cameras()) {
         const double radius =
             std::get<CameraData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data).look_radius;
-        const std::optional<Camera> camera = camera_at(placed, node);
-        if (camera && glm::distance(camera->eye, eye) <= radius) return true;
+        if (const std::optional<Camera> camera = camera_at(placed, node))
+            found.push_back({camera->eye, radius});
     }
-    return false;
+    return found;
+}
+
+bool looks_around_from(const PlacedScene& placed, const glm::dvec3& eye) {
+    return std::ranges::any_of(seats(placed),
+                               [&](const Seat& seat) { return glm::distance(seat.eye, eye) <= seat.radius; });
 }
 
 namespace {

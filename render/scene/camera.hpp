@@ -57,7 +57,13 @@ glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dve
 
 /// Returns the present pose of a camera node in world space; none if it is not valid (is_valid_pose).
 std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node);
-/// Returns whether `eye` is where drags look around (CameraData::look_radius).
+/// Where drags look around from: a ball about a camera node's eye, in world space (CameraData::look_radius).
+struct Seat {
+    glm::dvec3 eye{0};
+    double radius = 0;
+};
+std::vector<Seat> seats(const PlacedScene& placed);
+/// Returns whether `eye` is within one of them.
 bool looks_around_from(const PlacedScene& placed, const glm::dvec3& eye);
 /// Returns the scene's initial camera: the camera node with the lowest id if there is one, its pose is valid,
 /// and it sees something that can be drawn, where there is anything; else kNone.

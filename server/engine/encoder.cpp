@@ -86,7 +86,11 @@ void Encoder::encode_depth(const warp::DepthMap& map, Picture& picture, EncodedP
         const std::string bytes = warp::encode(map);
         depth_ =
             std::make_shared<const EncodedDepth>(EncodedDepth{header.frame, {bytes.begin(), bytes.end()}});
-        depth_header_ = {header.frame, map.columns, map.rows, map.scale,
+        depth_header_ = {header.frame,
+                         map.columns,
+                         map.rows,
+                         map.scale,
+                         picture.background_turns,
                          static_cast<std::int64_t>(bytes.size())};
         picture.depth_frame = header.frame;
     }

@@ -204,6 +204,7 @@ void Engine::begin_frame(Refinement refinement) {
     picture.header.revision = room_->document()->revision();
     picture.header.lease = lease_;
     picture.header.quality = quality;
+    picture.background_turns = visible.background.shows_cube_map();
     picture.newest_input = newest_input_;
     // A small one that shows something new delays nobody longer than an interactive frame.
     if (still && (shows_present() || refinement != Refinement::small)) picture.idle_since = last_change_;

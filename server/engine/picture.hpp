@@ -28,6 +28,7 @@ struct Picture {
     std::string client = {};  ///< of a snapshot: who asked for it
     /// The frame whose depth is this one's, too; 0: none is known.
     std::int64_t depth_frame = 0;
+    bool background_turns = false;  ///< with the camera
 };
 
 /// A map of depth as frames hold it.

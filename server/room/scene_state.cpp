@@ -131,6 +131,12 @@ std::optional<Error> apply(protocol::NodeOverride& change, const scene::Scene& s
     return std::nullopt;
 }
 
+std::vector<protocol::SceneState::Seat> seats_of(const scene::PlacedScene& placed) {
+    std::vector<protocol::SceneState::Seat> seats;
+    for (const scene::Seat& seat : scene::seats(placed)) seats.push_back({seat.eye, seat.radius});
+    return seats;
+}
+
 }  // namespace
 
 protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
@@ -148,6 +154,7 @@ protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
                              .triangles = scene.triangle_count(),
                              .bounds = {placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.min,
                                         placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.max},
+                             .seats = seats_of(placed),
                              .notices = loaded.notices});
     state.cameras = camera_names(scene);
     state.materials = material_names(scene);

@@ -24,7 +24,7 @@ TEST_CASE("a header that is encoded once says the same as one that is encoded fo
         CHECK(EncodedFrameHeader(encoded.text()).text() == encoded.text());
     };
     both(0, {});
-    header.depth = FrameHeader::Depth{4, 160, 90, 0.25, 5119};
+    header.depth = FrameHeader::Depth{4, 160, 90, 0.25, true, 5119};
     header.camera.pose.name = ",\"depth\":{\"bytes\":7}";
     both(17, 2.5);
     both(kMaxInteger, 0);

@@ -640,6 +640,8 @@ export type FrameHeader = {
   };
   /** How far away is what it shows, for clients that asked for it. */
   depth?: {
+    /** What is infinitely far turns with the camera; else it stays where it is in the image. */
+    backgroundTurns: boolean;
     /** Of the map behind this file; 0: this client has it already. */
     bytes: number;
     /** Blocks in a row. */
@@ -1152,6 +1154,13 @@ export type StateDocument = {
     nodes: number;
     /** What to know of it, as what of the file is not shown. */
     notices: Array<Notice>;
+    /** Where drags that rotate turn the view about the eye. */
+    seats: Array<{
+      /** The middle of where the eye is then. */
+      eye: Array<number>;
+      /** How far from it the eye may be. */
+      radius: number;
+    }>;
     /** Number of triangles. */
     triangles: number;
     /** The up axis in use; only for formats that do not define it: OBJ, STL and PLY. */
