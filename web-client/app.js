@@ -17,7 +17,7 @@ const token = new Token(location.hash);
 
 const connection = new Connection({
   url: socketAddress(document.baseURI),
-  hello: hello(location.hash, token.value),
+  hello: () => ({ ...hello(location.hash, token.value), depth: stage.warps }),
   on: {
     phase(phase) {
       const { role, client, steers } = connection;

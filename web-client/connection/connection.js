@@ -55,7 +55,7 @@ export class Connection {
    * `on` has a function for each `phase`, `frame` (promises that it is drawn or dropped), message `sent`,
    * changed `state`, `error` and other `message` that answers nothing that was asked.
    *
-   * @param {{url: string, hello: Omit<ClientHello, 'type'>, on: {
+   * @param {{url: string, hello: () => Omit<ClientHello, 'type'>, on: {
    *   phase: (phase: Phase) => void,
    *   frame: (frame: Frame) => Promise<void>,
    *   sent?: (message: ClientMessage & {id: number}) => void,
@@ -81,7 +81,7 @@ export class Connection {
     const socket = new WebSocket(this.#url, SUBPROTOCOL);
     this.#socket = socket;
     socket.binaryType = 'arraybuffer';
-    socket.onopen = () => this.#post({ type: 'hello', ...this.#hello });
+    socket.onopen = () => this.#post({ type: 'hello', ...this.#hello() });
     socket.onmessage = ({ data }) => {
       if (this.#phase === 'open') this.#listen();
       if (typeof data === 'string') this.#receive(parse(data));

@@ -70,3 +70,37 @@ export function directionThrough(camera, aspect, x, y) {
   const right = rightDirection(camera);
   return normalize(add(add(view, scale(right, x * top * aspect)), scale(cross(right, view), -y * top)));
 }
+
+/** What two ways to compute the same pose may differ by, in parts of its size, and of its coordinates. */
+const SAME = 1e-9;
+const ROUNDED = 1e-13;
+
+/**
+ * Whether two cameras see the same, but for rounding.
+ *
+ * @param {Camera} a
+ * @param {Camera} b
+ */
+export function isSamePose(a, b) {
+  if (a === b) return true;
+  const within = SAME * focusDistance(a) + ROUNDED * Math.max(length(a.eye), length(a.focus));
+  return distance(a.eye, b.eye) <= within && distance(a.focus, b.focus) <= within &&
+    distance(a.up, b.up) <= SAME && Math.abs(a.fov - b.fov) <= SAME * a.fov;
+}
+
+/**
+ * Where a point of the world is seen, from −1 (left, top) to 1 (right, bottom), and how deep it lies along the view.
+ *
+ * @param {Camera} camera
+ * @param {number} aspect width / height
+ * @param {number[]} point
+ * @returns {{x: number, y: number, depth: number}}
+ */
+export function placeOf(camera, aspect, point) {
+  const view = viewDirection(camera);
+  const right = rightDirection(camera);
+  const way = subtract(point, camera.eye);
+  const depth = dot(way, view);
+  const top = tangentHeight(camera) / 2;
+  return { x: dot(way, right) / (depth * top * aspect), y: -dot(way, cross(right, view)) / (depth * top), depth };
+}

@@ -1,6 +1,8 @@
+import { placeOf, viewDirection } from './camera.js';
 import { dollied, pannedBy, pinched, pointAt, turnedBy, wheeled } from './drags.js';
 import { applyKeyOperation, keyOperation, numberOf } from './keys.js';
 import { changedGrip, dragOperation, pressedGrip } from './styles.js';
+import { add, distance, dot, scale, subtract } from './vectors.js';
 
 /**
  * @import {
@@ -32,6 +34,8 @@ export class Gestures {
   #start = { eye: [0, 0, 5], focus: [0, 0, 0], up: [0, 1, 0], center: [0, 0, 0], fov: 40 };
   /** @type {?number[]|undefined} the surface point at the start; null: none is there, undefined: not looked for yet */
   #touched;
+  /** @type {?number[]} the point at the focus' depth that counts where none is there */
+  #instead = null;
 
   /** An independent copy: what one is fed does not change the other. */
   copy() {
@@ -40,6 +44,7 @@ export class Gestures {
     copy.#numbers = [...this.#numbers];
     copy.#start = this.#start;
     copy.#touched = this.#touched;
+    copy.#instead = this.#instead;
     return copy;
   }
 
@@ -52,8 +57,33 @@ export class Gestures {
    */
   restart(camera, keepTouched = false) {
     this.#start = camera;
-    if (!keepTouched) this.#touched = undefined;
+    if (!keepTouched) this.#forgetTouched();
     for (const pressed of this.#pressed) pressed.start = pressed.now;
+  }
+
+  /**
+   * Drags restart at `actual`, where the server has come to by the messages that lead to `expected` here. Where pans and
+   * zooms have gone farther or less far, what is touched lies as much deeper or less deep: both are in proportion.
+   *
+   * @param {Camera} expected
+   * @param {Camera} actual
+   * @param {NavigationContext} context
+   */
+  correct(expected, actual, context) {
+    const { eye } = this.#start;
+    const predicted = subtract(expected.eye, eye);
+    const part = dot(subtract(actual.eye, eye), predicted) / dot(predicted, predicted);
+    if (!looksAlike(actual, this.#start)) {
+      this.#forgetTouched();
+    } else if (this.#touched) {
+      if (part > 0) this.#touched = add(eye, scale(subtract(this.#touched, eye), part));
+    } else if (this.#instead) {
+      // At the depth of what is touched the images are the same.
+      const { x, y } = placeOf(expected, context.width / context.height, this.#instead);
+      const place = { x: (x + 1) * context.width / 2, y: (y + 1) * context.height / 2 };
+      this.#instead = pointAt(actual, place, context);
+    }
+    this.restart(actual, true);
   }
 
   /**
@@ -134,6 +164,11 @@ export class Gestures {
     this.#numbers = this.#numbers.filter((number) => number !== released);
   }
 
+  #forgetTouched() {
+    this.#touched = undefined;
+    this.#instead = null;
+  }
+
   #remove(pressed) {
     this.#pressed.splice(this.#pressed.indexOf(pressed), 1);
   }
@@ -162,7 +197,10 @@ export class Gestures {
   }
 
   #pointAt(place, context) {
-    return this.#touchedAt(place, context) ?? pointAt(this.#start, place, context);
+    const touched = this.#touchedAt(place, context);
+    if (touched) return touched;
+    this.#instead ??= pointAt(this.#start, place, context);
+    return this.#instead;
   }
 
   /** @param {NavigationContext} context */
@@ -193,5 +231,8 @@ export class Gestures {
     return pinched(this.#start, a, b, this.#pointAt(middle, context), context);
   }
 }
+
+/** @param {Camera} a @param {Camera} b */
+const looksAlike = (a, b) => distance(viewDirection(a), viewDirection(b)) < 1e-9 && distance(a.up, b.up) < 1e-9;
 
 const wayOf = ({ start, now }) => ({ x: now.x - start.x, y: now.y - start.y });

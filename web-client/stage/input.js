@@ -15,7 +15,8 @@ export class Input {
 
   /**
    * The page's `send`, `soon`, `mapping` like Picture's, `frame`: the number drawn, `rules`: the welcome's `input`,
-   * `marks`: FingerMarks, and `unheard` for what would be passed on were it enabled.
+   * `moved` for each move before it is thinned, `marks`: FingerMarks, and `unheard` for what would be passed on were it
+   * enabled.
    */
   constructor(element, page) {
     this.#page = { window: globalThis.window, ...page };
@@ -88,7 +89,9 @@ export class Input {
       this.#sendPointer(event);
       return;
     }
-    this.#pressed.set(pointerId, this.#pointerMessage(event));
+    const message = this.#pointerMessage(event);
+    this.#pressed.set(pointerId, message);
+    this.#page.moved?.(message);
     if (this.#moved.size === 0) this.#page.soon(() => this.#flush());
     this.#moved.add(pointerId);
   }

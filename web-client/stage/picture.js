@@ -1,58 +1,141 @@
-/** @import { FrameHeader } from '../base/protocol.js' */
+import { directionThrough, isSamePose, placeOf, viewDirection } from '../navigation/camera.js';
+import { add, dot, scale, subtract } from '../navigation/vectors.js';
+import { decodeDepthMap, reciprocalDistanceAt } from '../warp/depth-map.js';
+import { similarity, withinReach } from './reach.js';
+import { screenOf } from './screen.js';
 
-/** Shows frames on a canvas, none after a newer; `data-frame`, `data-level` and `data-revision` say which. */
+/**
+ * @import { FrameHeader } from '../base/protocol.js'
+ * @import { Camera } from '../navigation/camera.js'
+ * @import { Place } from '../navigation/drags.js'
+ * @import { DepthMap } from '../warp/depth-map.js'
+ * @import { Similarity } from './reach.js'
+ */
+
+/** To the point of a surface that another camera sees. */
+const SURFACE_STEPS = 8;
+
+/**
+ * Shows frames on a canvas, none after a newer; `data-frame`, `data-level` and `data-revision` say which. Until the next
+ * one comes it shows the last as another camera would see it: by its depth where it has any and WebGL 2 is there, else
+ * moved and scaled.
+ */
 export class Picture {
   /** @type {?FrameHeader} of the frame last drawn; null before the first */
   header = null;
   #canvas;
-  #context;
   #decode;
+  #screen;
   #received = 0;
   #drawn = 0;
-  #similarity = null;
+  /** @type {{frame: number, map: Promise<?DepthMap>}} the newest that came */
+  #depth = { frame: 0, map: Promise.resolve(null) };
+  /** @type {?DepthMap} of the frame drawn */
+  #map = null;
+  /** @type {?Camera} that is asked for */
+  #wanted = null;
+  /** @type {Camera} whose view is shown, but for the move */
+  #seen = /** @type {*} */ (null);
+  /** @type {?Similarity} */
+  #move = null;
 
-  constructor(canvas, decode = (file) => createImageBitmap(file)) {
+  constructor(canvas, decode = (file) => createImageBitmap(file, { colorSpaceConversion: 'none' })) {
     this.#canvas = canvas;
-    this.#context = canvas.getContext('2d', { alpha: false });
     this.#decode = decode;
+    this.#screen = screenOf(canvas, () => this.look(this.#wanted));
+  }
+
+  /** Whether depth is of use. */
+  get warps() {
+    return this.#screen.warps;
   }
 
   /**
    * Promises 'drawn', 'late' (a newer one was drawn first) or 'failed'. Who awaits this goes on before the page is
-   * displayed, so that picture and move() can change together.
+   * displayed, so that picture and look() can change together.
    */
   async show({ header, data }) {
     this.#received += 1;
     const turn = this.#received;
-    const bitmap = header && (await this.#decode(new Blob([data], { type: 'image/jpeg' })).catch(() => null));
+    const end = data.byteLength - (header?.depth?.bytes ?? 0);
+    const depth = this.#depthOf(header, data, end);
+    const file = new Blob([new Uint8Array(data, 0, end)], { type: 'image/jpeg' });
+    const bitmap = header && (await this.#decode(file).catch(() => null));
     if (!bitmap) return 'failed';
-    const late = turn < this.#drawn;
-    if (!late) {
-      this.#drawn = turn;
-      this.#draw(header, bitmap);
+    const map = await depth;
+    if (turn < this.#drawn) {
+      bitmap.close();
+      return 'late';
     }
-    bitmap.close();
-    return late ? 'late' : 'drawn';
+    this.#drawn = turn;
+    this.#draw(header, bitmap, map);
+    return 'drawn';
   }
 
-  /** Moves the picture by a Similarity until the next one comes; null: back to its place. */
-  move(similarity) {
-    this.#similarity = similarity;
-    const { scale, x, y } = similarity ?? {};
+  /** Shows what a camera sees, until the next frame comes; null: what the frame shows. @param {?Camera} camera */
+  look(camera) {
+    this.#wanted = camera;
+    const { header } = this;
+    if (!header) return;
+    const isThere = !camera || isSamePose(camera, header.camera);
+    const isWarped = !isThere && this.#map !== null;
+    this.#seen = isWarped ? withinReach(header.camera, camera) : header.camera;
+    this.#screen.draw(isWarped ? { header, to: this.#seen } : null);
+    this.#move = isThere || isWarped ? null : similarity(header.camera, camera, this.#view);
+    const { scale: factor, x, y } = this.#move ?? { scale: 1, x: 0, y: 0 };
     const shrunk = shrinkage(this.#box, this.#view);
-    this.#canvas.style.transform = similarity ? `translate(${x * shrunk}px, ${y * shrunk}px) scale(${scale})` : '';
+    const { style } = this.#canvas;
+    style.transform = this.#move ? `translate(${x * shrunk}px, ${y * shrunk}px) scale(${factor})` : '';
+  }
+
+  /**
+   * The point of the surface that a camera sees at a place of the view; null where nothing is, or it is not known.
+   *
+   * @param {Camera} camera
+   * @param {Place} place
+   */
+  surfaceAt(camera, { x, y }) {
+    const map = this.#map;
+    if (!map || !this.header) return null;
+    const { width, height } = this.#view;
+    const aspect = width / height;
+    const from = this.header.camera;
+    const view = viewDirection(camera);
+    const ray = directionThrough(camera, aspect, 2 * x / width - 1, 2 * y / height - 1);
+    const pointAt = (depth) => add(camera.eye, scale(ray, depth / dot(ray, view)));
+    // As deep as what the frame shows there, to begin with.
+    let reciprocal = reciprocalDistanceAt(map, x / width, y / height);
+    let point = pointAt(1 / reciprocal);
+    for (let step = 0; step < SURFACE_STEPS && reciprocal > 0; step += 1) {
+      const seen = placeOf(from, aspect, point);
+      reciprocal = reciprocalDistanceAt(map, (1 + seen.x) / 2, (1 + seen.y) / 2);
+      const there = directionThrough(from, aspect, seen.x, seen.y);
+      const surface = add(from.eye, scale(there, 1 / (reciprocal * dot(there, viewDirection(from)))));
+      point = pointAt(dot(subtract(surface, camera.eye), view));
+    }
+    return reciprocal > 0 ? point : null;
   }
 
   /** To be called when the canvas has changed its place on the page. */
   layout() {
     const { width, height } = this.#box;
     this.#canvas.classList.toggle('fills', this.#view.width === width && this.#view.height === height);
-    this.move(this.#similarity);
+    this.look(this.#wanted);
   }
 
   /** From the window's coordinates to those of the view shown, wherever the picture was moved. */
   mapping() {
     return viewMapping(this.#box, this.#view);
+  }
+
+  /** Where a point of the world is seen in the view; null where it is not. @returns {?Place} */
+  placeOf(point) {
+    if (!this.header) return null;
+    const { width, height } = this.#view;
+    const { x, y, depth } = placeOf(this.#seen, width / height, point);
+    if (!(depth > 0) || Math.abs(x) > 1 || Math.abs(y) > 1) return null;
+    const { scale: factor, x: right, y: down } = this.#move ?? { scale: 1, x: 0, y: 0 };
+    return { x: (x * factor + 1) * width / 2 + right, y: (y * factor + 1) * height / 2 + down };
   }
 
   /** Where the canvas is when it is not moved. */
@@ -65,25 +148,33 @@ export class Picture {
     return this.header?.view ?? this.#box;
   }
 
-  #draw(header, bitmap) {
-    const canvas = this.#canvas;
-    // Setting its size clears the canvas, even if it stays the same.
-    if (canvas.width !== bitmap.width) canvas.width = bitmap.width;
-    if (canvas.height !== bitmap.height) canvas.height = bitmap.height;
-    this.#context.drawImage(bitmap, 0, 0);
+  /** Frames of the same view have the map of the first of them. */
+  async #depthOf(header, data, end) {
+    const { depth } = header ?? {};
+    if (!depth || !this.warps) return null;
+    if (depth.bytes > 0) {
+      this.#depth = { frame: depth.frame, map: decodeDepthMap(new Uint8Array(data, end), depth).catch(() => null) };
+    }
+    return this.#depth.frame === depth.frame ? this.#depth.map : null;
+  }
+
+  #draw(header, bitmap, map) {
+    this.#map = map;
+    this.#screen.setFrame(bitmap, map);
     this.header = header;
+    this.#wanted = null;
     this.layout();
     const { frame, revision, quality } = header;
-    Object.assign(canvas.dataset, { frame, revision, level: quality?.level ?? '' });
+    Object.assign(this.#canvas.dataset, { frame, revision, level: quality?.level ?? '' });
   }
 }
 
 /** From the window's coordinates to those of a view that is fitted as a whole into the middle of a box. */
 export function viewMapping(box, view) {
-  const scale = shrinkage(box, view);
+  const shrunk = shrinkage(box, view);
   return (clientX, clientY) => ({
-    x: (clientX - box.left - box.width / 2) / scale + view.width / 2,
-    y: (clientY - box.top - box.height / 2) / scale + view.height / 2,
+    x: (clientX - box.left - box.width / 2) / shrunk + view.width / 2,
+    y: (clientY - box.top - box.height / 2) / shrunk + view.height / 2,
   });
 }
 

@@ -1,177 +1,225 @@
-/** @import { FrameHeader, ServerWelcome, StateDocument } from '../base/protocol.js' */
-
-/** What moves the camera otherwise: drags begin anew there. */
-const OTHER_MOVES = new Set(['keydown', 'patch', 'fit', 'fly']);
+import { isSamePose, withOrthogonalUp } from '../navigation/camera.js';
+import { CameraPath } from '../navigation/flight.js';
+import { Gestures } from '../navigation/gestures.js';
+import { distance } from '../navigation/vectors.js';
 
 /**
- * @typedef {{scale: number, x: number, y: number}} Similarity a point p of the picture, measured from the view's
- *   middle in its CSS pixels, goes to scale · p + (x, y)
+ * @import { FrameHeader, StateDocument } from '../base/protocol.js'
+ * @import { Camera } from '../navigation/camera.js'
+ * @import { NavigationContext, Place } from '../navigation/drags.js'
  */
-const NONE = { scale: 1, x: 0, y: 0 };
 
 /**
- * What messages will do to the picture that does not show them yet: two fingers, the wheel, and drags that pan
- * or zoom by a button alone, by the server's rules of input but without limits. It is exact at the depth of what is
- * touched. All else waits for the next picture.
+ * @typedef {{id: number, message: *, from?: Camera, gestures: Gestures, camera: Camera}} Step what a message made of the
+ *   camera, and where drags are since; `from`: where a flight was that it ended
+ */
+
+/** The oldest of more count as shown: some messages bring no frame. */
+const MOST_PENDING = 500;
+/** A flight that frames do not end by then was ended by something else. */
+const FLIGHT_IS_OVER_MS = 2000;
+
+/**
+ * The camera that the hands ask for: what the messages lead to that the last frame does not show. It follows the
+ * server's rules, and is corrected by each frame. What the server alone knows, as a fit, waits for the next frame.
  */
 export class Prediction {
-  /** @type {Partial<StateDocument['navigation']>} */
-  #navigation = {};
-  /** @type {ServerWelcome['input']|undefined} */
-  #rules;
+  #surfaceAt;
+  #clock;
+  /** @type {?StateDocument} */
+  #state = null;
   #steers = false;
-  /** @type {?FrameHeader} of the picture shown */
+  /** @type {?FrameHeader} of the frame shown */
   #shown = null;
-  /** From the picture shown to what the last message makes of it, and where the drag began. */
-  #now = NONE;
-  #start = NONE;
-  /** Where the messages lead that the picture does not show: {id, now}. */
+  /** @type {Step} the last that the frame shows */
+  #known = nothing();
+  /** @type {Step[]} those that it does not show */
   #pending = [];
-  /** The pressed pointers: {touches, buttons, start, place}. */
-  #pressed = new Map();
-  #lastId = 0;
-  /** Nothing is told before a picture shows this message. */
-  #blindUntil = 0;
+  /** @type {Map<number, *>} the last move of each pointer that is not sent yet */
+  #unsent = new Map();
+  /** @type {?{path: CameraPath, begun: number}} that this page has asked for */
+  #flight = null;
 
-  /** @returns {?Similarity} where the picture shown is to be moved; null: it is in its place */
-  get transform() {
-    const { scale, x, y } = this.#now;
-    const isMoved = scale !== 1 || x !== 0 || y !== 0;
-    const isTold = this.#steers && this.#shown !== null && this.#shown.handled >= this.#blindUntil;
-    return isMoved && isTold ? this.#now : null;
+  /**
+   * @param {{surfaceAt?: (camera: Camera, place: Place) => ?number[], clock?: () => number}} [page] the point of a
+   *   surface that a camera sees at a place of the view, as far as frames tell; ms
+   */
+  constructor({ surfaceAt, clock = () => performance.now() } = {}) {
+    this.#surfaceAt = surfaceAt;
+    this.#clock = clock;
   }
 
-  /** The state document as last heard, whether this page steers, and the welcome's `input`. */
-  follow({ navigation = {} }, steers, rules) {
-    this.#navigation = navigation;
-    this.#rules = rules;
-    if (this.#steers && !steers) this.forget();
+  /** @returns {?Camera} null before the first frame */
+  get camera() {
+    if (!this.#shown) return null;
+    if (this.#flight) return this.#flightCamera();
+    const { gestures, camera } = this.#last;
+    if (this.#unsent.size > 0) {
+      const copy = gestures.copy();
+      return [...this.#unsent.values()].reduce((moved, message) => this.#applied(copy, message, moved), camera);
+    }
+    // Between two frames it is the state's, which may fly.
+    return this.#pending.length === 0 ? this.#state?.camera ?? camera : camera;
+  }
+
+  /** Whether the camera changes as time passes. */
+  get flies() {
+    return this.#flight !== null;
+  }
+
+  /** The state document as last heard, and whether this page steers. @param {StateDocument} state */
+  follow(state, steers) {
+    this.#state = state;
+    if (this.#steers && !steers) this.release();
     this.#steers = steers;
   }
 
+  /** A pointer has moved; the message may not be sent. */
+  moved(message) {
+    if (this.#shown && this.#steers) this.#unsent.set(message.pointerId, message);
+  }
+
   sent(message) {
-    const { id, type, deltaY, deltaMode, x, y } = message;
-    this.#lastId = id;
-    const before = this.#now;
-    if (type.startsWith('pointer')) this.#pointer(message);
-    if (type === 'wheel' && this.#rules) {
-      const { wheelZoom, wheelSteps } = this.#rules;
-      this.#now = this.#zoomed(before, wheelZoom ** (-deltaY / wheelSteps[deltaMode]), { x, y });
-    }
-    if (type === 'wheel' || OTHER_MOVES.has(type)) this.#restart();
-    if (this.#now !== before) this.#pending.push({ id, now: this.#now });
+    this.#unsent.delete(message.pointerId);
+    if (!this.#shown || !this.#steers) return;
+    if (message.type === 'fly') this.#fly(message);
+    else if (isInput(message)) this.#push(message);
+    // What moves the camera otherwise, drags begin anew at.
+    else if (message.type === 'fit' || message.patch?.camera) this.#push({ id: message.id });
   }
 
   /** @param {FrameHeader} header */
   drawn(header) {
     const before = this.#shown;
     this.#shown = header;
-    const { handled, view } = header;
-    const isOtherView = view.width !== before?.view.width || view.height !== before.view.height;
-    if (!before || isOtherView || (handled === before.handled && poseOf(header) !== poseOf(before))) {
-      this.#giveUp();
+    if (!before || sizeOf(before) !== sizeOf(header)) {
+      this.#begin(this.#last.gestures, header.camera);
       return;
     }
-    const base = this.#pending.findLast(({ id }) => id <= handled)?.now ?? NONE;
-    this.#pending = this.#pending.filter(({ id }) => id > handled);
-    for (const step of this.#pending) step.now = since(base, step.now);
-    this.#now = since(base, this.#now);
-    this.#start = since(base, this.#start);
+    let known = this.#known;
+    while (this.#pending[0]?.id <= header.handled) known = /** @type {Step} */ (this.#pending.shift());
+    const isRight = isSamePose(known.camera, header.camera);
+    const gestures = isRight ? known.gestures : known.gestures.copy();
+    if (!isRight) gestures.correct(known.camera, header.camera, this.#context());
+    this.#known = { ...known, gestures, camera: header.camera };
+    if (!isRight) this.#applyPending();
+    this.#endFlight(header.camera);
   }
 
-  /** The connection is lost, or the server does not take this page's input. */
+  /** The server does not take this page's input: nothing is pressed any more. */
+  release() {
+    this.#begin(new Gestures(), this.#shown?.camera);
+  }
+
+  /** The connection is lost. */
   forget() {
-    this.#pressed.clear();
-    this.#giveUp();
+    this.#shown = null;
+    this.release();
   }
 
-  /** What is not shown yet is left to the pictures. */
-  #giveUp() {
+  /** @param {Camera} [camera] of the frame shown */
+  #begin(gestures, camera = nothing().camera) {
+    gestures.restart(camera);
+    this.#known = { ...nothing(), gestures, camera };
     this.#pending = [];
-    this.#now = NONE;
-    this.#blindUntil = this.#lastId;
-    this.#restart();
+    this.#unsent.clear();
+    this.#flight = null;
   }
 
-  #restart() {
-    this.#start = this.#now;
-    for (const held of this.#pressed.values()) held.start = held.place;
+  get #last() {
+    return this.#pending.at(-1) ?? this.#known;
   }
 
-  #pointer({ type, pointerId, pointerType, x, y, buttons }) {
-    const pressed = this.#pressed;
-    const place = { x, y };
-    if (type === 'pointerdown') {
-      pressed.delete(pointerId);
-      if (pressed.size === 2) return; // a third finger
-      pressed.set(pointerId, { touches: pointerType === 'touch', buttons, place });
-      this.#restart();
-      return;
+  #push(message) {
+    const from = this.#flight ? this.#flightCamera() : undefined;
+    this.#flight = null;
+    const before = this.#last;
+    const gestures = before.gestures.copy();
+    const camera = this.#applied(gestures, message, from ?? before.camera);
+    this.#pending.push({ id: message.id, message, from, gestures, camera });
+    if (this.#pending.length > MOST_PENDING) this.#known = /** @type {Step} */ (this.#pending.shift());
+  }
+
+  #applyPending() {
+    let before = this.#known;
+    for (const step of this.#pending) {
+      step.gestures = before.gestures.copy();
+      step.camera = this.#applied(step.gestures, step.message, step.from ?? before.camera);
+      before = step;
     }
-    const held = pressed.get(pointerId);
-    if (!held) return;
-    if (type !== 'pointercancel') {
-      held.place = place;
-      this.#now = this.#dragged();
+  }
+
+  /** Where a message leads; `gestures` take it. @param {Gestures} gestures @returns {Camera} */
+  #applied(gestures, message, camera) {
+    const context = this.#context();
+    switch (message.type) {
+      case 'wheel':
+        return gestures.wheel(message, camera, context);
+      case 'keydown':
+        return gestures.keyDown(message, camera, context) ?? camera;
+      case 'keyup':
+        gestures.keyUp(message);
+        return camera;
+      case undefined:
+        gestures.restart(camera);
+        return camera;
+      default:
+        return gestures.pointer(message, camera, context);
     }
-    if (type !== 'pointermove' || buttons === 0) pressed.delete(pointerId);
-    else if (buttons === held.buttons) return;
-    held.buttons = buttons;
-    this.#restart();
   }
 
-  #dragged() {
-    const { panSpeed, style } = this.#navigation;
-    const [a, b] = this.#pressed.values();
-    const x = a.place.x - a.start.x;
-    const y = a.place.y - a.start.y;
-    if (a.touches && b?.touches) {
-      const middle = { x: (a.start.x + b.start.x) / 2, y: (a.start.y + b.start.y) / 2 };
-      const pinched = this.#zoomed(this.#start, span(a.place, b.place) / span(a.start, b.start), middle);
-      return panned(pinched, (x + b.place.x - b.start.x) / 2, (y + b.place.y - b.start.y) / 2, panSpeed);
+  #fly({ id, keyframes, easing }) {
+    const from = /** @type {Camera} */ (this.camera);
+    let laid = from;
+    const path = [];
+    for (const { at, camera = {} } of keyframes) {
+      laid = withOrthogonalUp({ ...laid, ...camera });
+      path.push({ at, camera: laid });
     }
-    const { drags = {}, dragZoom = 1 } = this.#rules ?? {};
-    const drag = b || style === undefined ? undefined : drags[style]?.[a.buttons];
-    if (drag === 'pan') return panned(this.#start, x, y, panSpeed);
-    if (drag === 'zoom') return this.#zoomed(this.#start, dragZoom ** (-y / this.#view.height));
-    return this.#start;
+    this.#push({ id });
+    // Where a camera node stands, the server alone knows.
+    if (keyframes.some(({ camera }) => camera?.node !== undefined)) return;
+    this.#flight = { path: new CameraPath(from, path, easing), begun: this.#clock() };
   }
 
-  /** Before the first picture nothing is told. */
-  get #view() {
-    return this.#shown?.view ?? { width: 1, height: 1 };
+  #flightCamera() {
+    const { path, begun } = /** @type {{path: CameraPath, begun: number}} */ (this.#flight);
+    return path.at(this.#clock() - begun);
   }
 
-  /**
-   * About a place of the view, from its top left; the view's middle where it is left out.
-   *
-   * @param {Similarity} from
-   * @param {number} ratio
-   * @param {{x: number, y: number}} [about]
-   */
-  #zoomed({ scale, x, y }, ratio, about) {
-    const factor = ratio ** (this.#navigation.zoomSpeed ?? 1);
-    const { width, height } = this.#view;
-    const fixed = about ? { x: about.x - width / 2, y: about.y - height / 2 } : { x: 0, y: 0 };
-    return { scale: scale * factor, x: fixed.x + factor * (x - fixed.x), y: fixed.y + factor * (y - fixed.y) };
+  /** Frames lag behind a flight: it is over where they have come to its end. */
+  #endFlight(camera) {
+    if (!this.#flight) return;
+    const { path, begun } = this.#flight;
+    const past = this.#clock() - begun - path.duration;
+    if (past >= 0 && (past > FLIGHT_IS_OVER_MS || isSamePose(path.at(path.duration), camera))) this.#flight = null;
+  }
+
+  /** @returns {NavigationContext} */
+  #context() {
+    const { scene, navigation, views } = /** @type {StateDocument} */ (this.#state);
+    const { width, height } = /** @type {FrameHeader} */ (this.#shown).view;
+    const { turnAbout, ...rules } = navigation;
+    return {
+      ...rules,
+      width,
+      height,
+      radius: distance(scene.bounds.min, scene.bounds.max) / 2,
+      turnAboutTouched: turnAbout === 'touched',
+      surfaceAt: this.#surfaceAt,
+      looksAroundFrom: (eye) => scene.seats.some((seat) => distance(seat.eye, eye) <= seat.radius),
+      home: views.home,
+    };
   }
 }
 
-function panned({ scale, x, y }, right, down, speed) {
-  return { scale, x: x + right * speed, y: y + down * speed };
+/** @returns {Step} */
+function nothing() {
+  const camera = { eye: [0, 0, 1], focus: [0, 0, 0], up: [0, 1, 0], center: [0, 0, 0], fov: 40 };
+  return { id: 0, message: {}, gestures: new Gestures(), camera };
 }
 
-/** From where `base` leads to where `now` does. */
-function since(base, now) {
-  const scale = now.scale / base.scale;
-  return { scale, x: now.x - scale * base.x, y: now.y - scale * base.y };
-}
+const isInput = ({ type }) => type.startsWith('pointer') || type === 'wheel' || type.startsWith('key');
 
-/** Fingers on the same pixel would divide by zero. */
-function span(a, b) {
-  return Math.max(Math.hypot(a.x - b.x, a.y - b.y), 1);
-}
-
-function poseOf({ camera: { eye, focus, up, fov } }) {
-  return String([eye, focus, up, fov]);
-}
+/** @param {FrameHeader} header */
+const sizeOf = ({ view: { width, height } }) => `${width} x ${height}`;

@@ -29,12 +29,13 @@ export class Stage {
   #connection;
   #canvas = find('view');
   #picture = new Picture(this.#canvas);
-  #prediction = new Prediction();
+  #prediction = new Prediction({ surfaceAt: (camera, place) => this.#picture.surfaceAt(camera, place) });
   #labels = new Labels(find('labels'));
   #lines = new Lines(find('lines'));
   #noticesSeen = new Set();
   #controlBar;
   #input;
+  #flying = 0;
 
   /** @param {{store: Store, commands: Commands, connection: Connection, meter: Meter, hasToken: boolean}} page */
   constructor({ store, commands, connection, meter, hasToken }) {
@@ -58,6 +59,10 @@ export class Stage {
       frame: () => (store.now.hasPicture ? store.now.header?.frame : undefined),
       soon: (action) =>
         (meter.lateMs(performance.now()) > LATE_MS ? setTimeout(action, THINNED_MS) : requestAnimationFrame(action)),
+      moved: (message) => {
+        this.#prediction.moved(message);
+        this.#move();
+      },
       marks: new FingerMarks(find('finger-marks')),
       unheard: () => this.#controlBar.offer(),
     });
@@ -122,6 +127,11 @@ export class Stage {
     return header;
   }
 
+  /** Whether frames are to hold depth. */
+  get warps() {
+    return this.#picture.warps;
+  }
+
   sent(message) {
     this.#prediction.sent(message);
     this.#move();
@@ -131,7 +141,8 @@ export class Stage {
   follow(state) {
     const { steers } = this.#store.now;
     this.#input.enabled = steers;
-    this.#prediction.follow(state, steers, this.#connection.input);
+    this.#prediction.follow(state, steers);
+    this.#move();
   }
 
   /** @param {ServerLoading} message */
@@ -163,16 +174,21 @@ export class Stage {
 
   /** What was refused is no answer to a question. @param {ServerError} error */
   inputRefused(error) {
-    if (error.code === 'not-in-control') this.#prediction.forget();
+    if (error.code === 'not-in-control') this.#prediction.release();
     this.#move();
     this.report(error);
   }
 
-  /** While frames are late, picture and labels go with the fingers. */
+  /** While frames are late, picture and labels go with the fingers, and with flights. */
   #move() {
-    const { transform } = this.#prediction;
-    this.#picture.move(transform);
-    this.#labels.show(this.#picture.header, this.#store.now.state?.markers, this.#picture.mapping(), transform);
+    this.#picture.look(this.#prediction.camera);
+    this.#labels.show(this.#picture, this.#store.now.state?.markers);
+    if (this.#prediction.flies) this.#flying ||= requestAnimationFrame(() => this.#flyOn());
+  }
+
+  #flyOn() {
+    this.#flying = 0;
+    this.#move();
   }
 
   #showPhase() {

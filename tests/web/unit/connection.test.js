@@ -16,7 +16,7 @@ function setUp({ role = 'control', token, resume, random = () => 1 } = {}) {
   const page = { sockets: [], phases: [], sent: [], frames: [], states: [], errors: [], messages: [], clock: new FakeClock() };
   page.connection = new Connection({
     url: 'ws://server/ws',
-    hello: { role, token, resume },
+    hello: () => ({ role, token, resume }),
     on: {
       phase: (phase) => page.phases.push(phase),
       sent: (message) => page.sent.push(message),

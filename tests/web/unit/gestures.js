@@ -1,4 +1,6 @@
 import { readFileSync, readdirSync } from 'node:fs';
+import { directionThrough } from '../../../web-client/navigation/camera.js';
+import { add, cross, distance, dot, scale, subtract } from '../../../web-client/navigation/vectors.js';
 import { Input } from '../../../web-client/stage/input.js';
 import { viewMapping } from '../../../web-client/stage/picture.js';
 import { FakeWindow, fakeEvent } from './fakes.js';
@@ -15,6 +17,33 @@ const MS_BETWEEN_EVENTS = 4;
  * camera is one of `cameras`. Within the radius of a `seat` from its eye drags look around.
  */
 export const gestures = readdirSync(FOLDER).map((name) => ({ name, ...JSON.parse(readFileSync(new URL(name, FOLDER))) }));
+
+/** The triangle across the bounds in the scene of the server's test, seen from its front only. */
+function hitOf({ min, max }, origin, direction) {
+  const corners = [min, [max[0], min[1], max[2]], max];
+  const edges = corners.map((corner, i) => subtract(corners[(i + 1) % 3], corner));
+  const normal = cross(edges[0], edges[1]);
+  if (dot(normal, direction) >= 0) return null;
+  const away = dot(normal, subtract(min, origin)) / dot(normal, direction);
+  const point = add(origin, scale(direction, away));
+  const isInside = corners.every((corner, i) => dot(cross(edges[i], subtract(point, corner)), normal) >= 0);
+  return away > 0 && isInside ? point : null;
+}
+
+/** What a gesture's moves depend on. */
+export function contextOf({ view: { width, height }, bounds, navigation, seat }) {
+  const { turnAbout, ...rest } = navigation;
+  return {
+    ...rest,
+    width,
+    height,
+    radius: distance(bounds.min, bounds.max) / 2,
+    turnAboutTouched: turnAbout === 'touched',
+    surfaceAt: (camera, { x, y }) =>
+      hitOf(bounds, camera.eye, directionThrough(camera, width / height, 2 * x / width - 1, 2 * y / height - 1)),
+    looksAroundFrom: (eye) => seat !== undefined && distance(seat.eye, eye) <= seat.radius,
+  };
+}
 
 /**
  * What the page sends of events; what a gesture's events leave out is as browsers have it.

@@ -7,7 +7,7 @@ import { CameraPath } from '../../../web-client/navigation/flight.js';
 import { Gestures } from '../../../web-client/navigation/gestures.js';
 import { keyOperation } from '../../../web-client/navigation/keys.js';
 import { add, cross, distance, dot, length, scale, subtract } from '../../../web-client/navigation/vectors.js';
-import { gestures } from './gestures.js';
+import { contextOf, gestures } from './gestures.js';
 
 /** Of a vector's length: the server's arithmetic is the same but for rounding. */
 const WITHIN = 1e-9;
@@ -16,32 +16,6 @@ const CAMERA = { eye: [4, 2.5, 6], focus: [0.25, 0.75, -0.125], up: [0, 1, 0], c
 function assertNear(actual, expected, what) {
   const error = distance(actual, expected);
   assert.ok(error <= WITHIN * Math.max(length(expected), 1), `${what}: ${actual} instead of ${expected}`);
-}
-
-/** The triangle across the bounds in the scene of the server's test, seen from its front only. */
-function hitOf({ min, max }, origin, direction) {
-  const corners = [min, [max[0], min[1], max[2]], max];
-  const edges = corners.map((corner, i) => subtract(corners[(i + 1) % 3], corner));
-  const normal = cross(edges[0], edges[1]);
-  if (dot(normal, direction) >= 0) return null;
-  const away = dot(normal, subtract(min, origin)) / dot(normal, direction);
-  const point = add(origin, scale(direction, away));
-  const isInside = corners.every((corner, i) => dot(cross(edges[i], subtract(point, corner)), normal) >= 0);
-  return away > 0 && isInside ? point : null;
-}
-
-function contextOf({ view: { width, height }, bounds, navigation, seat }) {
-  const { turnAbout, ...rest } = navigation;
-  return {
-    ...rest,
-    width,
-    height,
-    radius: distance(bounds.min, bounds.max) / 2,
-    turnAboutTouched: turnAbout === 'touched',
-    surfaceAt: (camera, { x, y }) =>
-      hitOf(bounds, camera.eye, directionThrough(camera, width / height, 2 * x / width - 1, 2 * y / height - 1)),
-    looksAroundFrom: (eye) => seat !== undefined && distance(seat.eye, eye) <= seat.radius,
-  };
 }
 
 function after(fed, message, camera, context) {

@@ -10,7 +10,8 @@ function setUp() {
     height: 1,
     dataset: {},
     classList: { toggle: (name, on) => (on ? page.classes.add(name) : page.classes.delete(name)) },
-    getContext: () => ({ drawImage: (bitmap) => page.drawn.push(bitmap.name) }),
+    // Without WebGL 2; e2e/warp.test.js has it.
+    getContext: (kind) => (kind === '2d' ? { drawImage: (bitmap) => page.drawn.push(bitmap.name) } : null),
     get offsetLeft() { return page.box.left; },
     get offsetTop() { return page.box.top; },
     get offsetWidth() { return page.box.width; },
@@ -22,8 +23,9 @@ function setUp() {
   return page;
 }
 
+const CAMERA = { eye: [0, 0, 10], focus: [0, 0, 0], up: [0, 1, 0], center: [0, 0, 0], fov: 90 };
 const frame = (number, view = { width: 100, height: 50, pixelRatio: 2 }) => ({
-  header: { frame: number, revision: number + 100, view, quality: { level: 'still' } },
+  header: { frame: number, revision: number + 100, camera: CAMERA, view, quality: { level: 'still' } },
   data: new ArrayBuffer(1),
 });
 
@@ -90,38 +92,71 @@ test('before the first picture the view is the page', () => {
   assert.deepEqual(page.picture.mapping()(15, 30), { x: 5, y: 10 });
 });
 
+/** A camera that the fingers have moved by so many pixels of a view that is 100 high, and nearer by a factor. */
+function moved(right, down, nearer = 1) {
+  const shift = [-right * 0.2 / nearer, down * 0.2 / nearer, 0];
+  const add = (point) => point.map((x, i) => x + shift[i]);
+  return { ...CAMERA, eye: add([0, 0, 10 / nearer]), focus: add([0, 0, 0]) };
+}
+
+/** "translate(15px, -4px) scale(2)" as [15, -4, 2], rounded. */
+const numbersOf = ({ style }) => (style.transform.match(/-?[\d.]+(e-\d+)?/g) ?? []).map((x) => Math.round(x * 1e6) / 1e6 + 0);
+
 test('a picture is moved in the pixels of the view that it shows, and goes back', async () => {
   const page = setUp();
   const shown = page.picture.show(frame(1, { width: 200, height: 100, pixelRatio: 2 }));
   page.decoded(0, 'one');
   await shown;
-  page.picture.move(null);
+  page.picture.look(null);
   assert.equal(page.canvas.style.transform, '');
-  page.picture.move({ scale: 2, x: 30, y: -8 });
-  assert.equal(page.canvas.style.transform, 'translate(15px, -4px) scale(2)');
-  page.picture.move({ scale: 0.5, x: 0, y: 10 });
-  assert.equal(page.canvas.style.transform, 'translate(0px, 5px) scale(0.5)');
-  page.picture.move(null);
+  page.picture.look(moved(30, -8, 2));
+  assert.deepEqual(numbersOf(page.canvas), [15, -4, 2]);
+  page.picture.look(moved(0, 10, 0.5));
+  assert.deepEqual(numbersOf(page.canvas), [0, 5, 0.5]);
+  // A turn waits for its frame.
+  page.picture.look({ ...CAMERA, eye: [1, 0, 10] });
+  assert.equal(page.canvas.style.transform, '');
+  page.picture.look(CAMERA);
   assert.equal(page.canvas.style.transform, '');
 });
 
 test('wherever it is moved, coordinates are those of its place', async () => {
   const page = setUp();
   page.box = { left: 10, top: 20, width: 100, height: 200 };
-  const shown = page.picture.show(frame(1));
+  const shown = page.picture.show(frame(1, { width: 200, height: 100, pixelRatio: 2 }));
   page.decoded(0, 'one');
   await shown;
-  page.picture.move({ scale: 0.25, x: 300, y: -50 });
-  assert.deepEqual(page.picture.mapping()(60, 120), { x: 50, y: 25 });
+  page.picture.look(moved(300, -50, 0.25));
+  assert.deepEqual(page.picture.mapping()(60, 120), { x: 100, y: 50 });
   assert.deepEqual(page.picture.mapping()(10, 95), { x: 0, y: 0 });
   assert.ok(!page.classes.has('fills'));
   // The page is turned, and so is the way that the picture is moved by.
-  page.box = { left: 0, top: 0, width: 100, height: 50 };
+  page.box = { left: 0, top: 0, width: 200, height: 100 };
   page.picture.layout();
   assert.ok(page.classes.has('fills'));
   page.box = { left: 0, top: 0, width: 50, height: 100 };
   page.picture.layout();
-  assert.equal(page.canvas.style.transform, 'translate(150px, -25px) scale(0.25)');
+  assert.deepEqual(numbersOf(page.canvas), [75, -12.5, 0.25]);
+});
+
+test('a point of the world is seen where the picture shows it, also while that is moved', async () => {
+  const page = setUp();
+  assert.equal(page.picture.placeOf([0, 0, 0]), null);
+  const shown = page.picture.show(frame(1, { width: 200, height: 100, pixelRatio: 2 }));
+  page.decoded(0, 'one');
+  await shown;
+  const near = (point, x, y) => {
+    const place = page.picture.placeOf(point);
+    assert.ok(Math.hypot(place.x - x, place.y - y) < 1e-9, JSON.stringify(place));
+  };
+  near([0, 0, 0], 100, 50);
+  near([10, 5, 0], 150, 25);
+  near([-19, -9.5, 0], 5, 97.5);
+  for (const point of [[0, 0, 20], [0, 0, 10], [21, 0, 0], [0, -11, 0], [NaN, 0, 0]]) {
+    assert.equal(page.picture.placeOf(point), null);
+  }
+  page.picture.look(moved(-20, 4, 1.5));
+  near([10, 5, 0], 100 + 75 - 20, 50 - 37.5 + 4);
 });
 
 test('coordinates go through the bars beside a fitted picture', () => {
