@@ -16,7 +16,7 @@ const grid = [-0.4, -0.2, 0, 0.3, 0.45].flatMap((x) => [-0.4, 0, 0.35].map((y) =
 /** Where what is drawn at a place, measured from the view's middle, is seen while the picture is moved. */
 const moved = ({ a: scale, e: x, f: y }, place) => [scale * place[0] + x, scale * place[1] + y];
 
-describe('hands on a tablet whose pictures are late', { skip: browserIsMissing }, () => {
+describe('hands on a tablet without WebGL 2 whose pictures are late', { skip: browserIsMissing }, () => {
   let server;
   let link;
   let browser;
@@ -26,7 +26,7 @@ describe('hands on a tablet whose pictures are late', { skip: browserIsMissing }
     server = await Server.start();
     link = await HeldLink.open(server.port);
     browser = await launchBrowser();
-    tablet = await Tablet.open(browser, link.address, TABLET);
+    tablet = await Tablet.open(browser, link.address, { ...TABLET }, { hasWebGl: false });
     await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
     await tablet.page.evaluate(() => {
       // Where the latest messages say that the fingers are.
@@ -190,6 +190,179 @@ describe('hands on a tablet whose pictures are late', { skip: browserIsMissing }
     assert.deepEqual((await look()).transform, { a: 1, e: 0, f: 0 });
     assert.deepEqual(await marks(), []);
     await touch('touchEnd');
+  });
+
+  test('in all this the browser had nothing to complain of', () => {
+    assert.deepEqual(tablet.complaints, []);
+  });
+});
+
+describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: browserIsMissing }, () => {
+  const SIZE = { width: 800, height: 600, pixelRatio: 1 };
+  let server;
+  let link;
+  let browser;
+  let tablet;
+
+  before(async () => {
+    server = await Server.start();
+    link = await HeldLink.open(server.port);
+    browser = await launchBrowser();
+    tablet = await Tablet.open(browser, link.address, SIZE);
+    await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
+    await tablet.page.evaluate(countRefreshes);
+  });
+
+  after(async () => {
+    await browser?.close();
+    link?.close();
+    await server?.stop();
+  });
+
+  /** Runs in the page: counts refreshes, and at which of them input came and the picture was drawn anew. */
+  function countRefreshes() {
+    globalThis.refreshes = { now: 0, input: [], drawn: [] };
+    const count = () => {
+      globalThis.refreshes.now += 1;
+      requestAnimationFrame(count);
+    };
+    requestAnimationFrame(count);
+    for (const type of ['pointermove', 'keydown', 'wheel', 'click']) {
+      window.addEventListener(type, () => globalThis.refreshes.input.push(globalThis.refreshes.now), { capture: true });
+    }
+    const { drawElements } = WebGL2RenderingContext.prototype;
+    WebGL2RenderingContext.prototype.drawElements = function counting(...about) {
+      globalThis.refreshes.drawn.push(globalThis.refreshes.now);
+      return drawElements.apply(this, about);
+    };
+  }
+
+  const touch = (type, ...places) =>
+    tablet.devtools.send('Input.dispatchTouchEvent', { type, touchPoints: places.map(([x, y], id) => ({ id, x, y })) });
+
+  const nextRefreshes = () =>
+    tablet.page.evaluate(() => new Promise((resolve) => {
+      requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+    }));
+
+  /** The page's pixels, far away: what hides small errors at edges. */
+  const pixels = () => tablet.page.evaluate(() => {
+    const context = new OffscreenCanvas(160, 120).getContext('2d', { willReadFrequently: true });
+    context.imageSmoothingQuality = 'high';
+    context.drawImage(document.querySelector('#view'), 0, 0, 160, 120);
+    return [...context.getImageData(0, 0, 160, 120).data];
+  });
+  const meanDifference = (a, b) => a.reduce((sum, x, i) => sum + Math.abs(x - b[i]), 0) / a.length;
+
+  const labelAt = () => tablet.page.evaluate(() => {
+    const { e, f } = new DOMMatrix(getComputedStyle(document.querySelector('#labels p')).transform);
+    return [e, f];
+  });
+
+  async function settled() {
+    await nextRefreshes();
+    const { id } = tablet.wire.sent.filter((message) => message.id).at(-1);
+    const { frame } = await tablet.wire.still(id);
+    await tablet.shows(frame);
+    await nextRefreshes();
+  }
+
+  /** Does something while no picture comes, and checks what the page makes of the last one. */
+  async function foretold(name, act) {
+    await settled();
+    const before = await pixels();
+    link.hold();
+    await tablet.page.evaluate(() => Object.assign(globalThis.refreshes, { input: [], drawn: [] }));
+    await act();
+    await nextRefreshes();
+    const { input, drawn } = await tablet.page.evaluate(() => globalThis.refreshes);
+    for (const at of input) assert.ok(drawn.some((refresh) => refresh === at || refresh === at + 1), `${name}: ${input} ${drawn}`);
+    assert.ok(input.length > 0, `${name}: no input`);
+    const late = await pixels();
+    const lateLabel = await labelAt();
+    await tablet.screenshot(`warped-${name}`);
+    link.release();
+    await settled();
+    await tablet.screenshot(`warped-${name}-truth`);
+    const truth = await pixels();
+    const [told, none] = [meanDifference(late, truth), meanDifference(before, truth)];
+    assert.ok(none > 1, `${name}: the picture changes`);
+    assert.ok(told < 0.5 * none, `${name}: ${told} with a warp, ${none} without`);
+    const jump = apart(lateLabel, await labelAt());
+    assert.ok(jump <= WITHIN_PX, `${name}: a marker jumps by ${jump} pixels`);
+  }
+
+  test('its frames hold depth', async () => {
+    await settled();
+    assert.equal(tablet.wire.sent[0].depth, true);
+    assert.ok(tablet.wire.frames.at(-1).depth);
+    const { point } = await tablet.pick([420, 330]);
+    await tablet.say({ type: 'patch', patch: { markers: { Here: { text: 'Here', point } } } });
+    await tablet.wire.until('the marker', () => tablet.wire.frames.at(-1)?.markers?.Here);
+    await nextRefreshes();
+  });
+
+  test('a turn is on the glass at the next refresh', () =>
+    foretold('turn', async () => {
+      await touch('touchStart', [400, 300]);
+      for (let step = 1; step <= 4; step += 1) {
+        await touch('touchMove', [400 + 9 * step, 300 + 2 * step]);
+        await nextRefreshes();
+      }
+      await touch('touchEnd');
+    }));
+
+  test('so are a pan and a pinch', () =>
+    foretold('pinch', async () => {
+      await touch('touchStart', [380, 330]);
+      await touch('touchStart', [380, 330], [460, 330]);
+      for (let step = 1; step <= 4; step += 1) {
+        await touch('touchMove', [380 - 4 * step, 330 + 6 * step], [460 + 12 * step, 330 + 6 * step]);
+        await nextRefreshes();
+      }
+      await touch('touchEnd');
+    }));
+
+  test('so are keys', () =>
+    foretold('keys', async () => {
+      await tablet.page.keyboard.press('ArrowLeft');
+      await nextRefreshes();
+      await tablet.page.keyboard.press('Shift+ArrowDown');
+    }));
+
+  test('so is the wheel', async () => {
+    await tablet.page.mouse.move(420, 330);
+    await foretold('wheel', () => tablet.page.mouse.wheel(0, 300));
+  });
+
+  test('so is a flight', async () => {
+    await settled();
+    const before = await pixels();
+    link.hold();
+    await tablet.page.locator('#bar button').first().tap();
+    await tablet.page.waitForTimeout(800);
+    const late = await pixels();
+    link.release();
+    await settled();
+    await tablet.wire.quiet(400);
+    const truth = await pixels();
+    assert.ok(meanDifference(late, truth) < 0.5 * meanDifference(before, truth));
+  });
+
+  test('where its drawing is lost, it comes back', async () => {
+    await settled();
+    const before = await pixels();
+    await tablet.page.evaluate(async () => {
+      const canvas = document.querySelector('#view');
+      const lose = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+      const restored = new Promise((resolve) => { canvas.addEventListener('webglcontextrestored', resolve); });
+      lose.loseContext();
+      await new Promise((resolve) => { setTimeout(resolve, 100); });
+      lose.restoreContext();
+      await restored;
+    });
+    await nextRefreshes();
+    assert.ok(meanDifference(await pixels(), before) < 0.5);
   });
 
   test('in all this the browser had nothing to complain of', () => {

@@ -34,6 +34,15 @@ function rememberSockets() {
   };
 }
 
+/** Runs there, too: what WebGL draws can be looked at later, or there is no WebGL 2. */
+function changeWebGl({ isMissing }) {
+  const { getContext } = HTMLCanvasElement.prototype;
+  HTMLCanvasElement.prototype.getContext = function changed(kind, options) {
+    if (kind === 'webgl2' && isMissing) return null;
+    return getContext.call(this, kind, kind === 'webgl2' ? { ...options, preserveDrawingBuffer: true } : options);
+  };
+}
+
 /** Runs there, too: the help, which opens by itself on a first visit, has been seen. */
 function rememberHelp() {
   try {
@@ -60,9 +69,9 @@ export class Tablet {
    * @param {import('playwright-core').Browser} browser
    * @param {string} address
    * @param {{width: number, height: number, pixelRatio: number}} size
-   * @param {import('playwright-core').BrowserContextOptions & {isFirstVisit?: boolean}} [options] more of the browser's
+   * @param {import('playwright-core').BrowserContextOptions & {isFirstVisit?: boolean, hasWebGl?: boolean}} [options] more of the browser's
    */
-  static async open(browser, address, { width, height, pixelRatio }, { isFirstVisit = false, ...options } = {}) {
+  static async open(browser, address, { width, height, pixelRatio }, { isFirstVisit = false, hasWebGl = true, ...options } = {}) {
     const tablet = new Tablet();
     const context = await browser.newContext({
       viewport: { width, height },
@@ -73,6 +82,7 @@ export class Tablet {
     });
     context.setDefaultTimeout(LIMIT_MS);
     await context.addInitScript(rememberSockets);
+    await context.addInitScript(changeWebGl, { isMissing: !hasWebGl });
     if (!isFirstVisit) await context.addInitScript(rememberHelp);
     tablet.page = await context.newPage();
     tablet.wire = new Wire(tablet.page);
@@ -265,7 +275,9 @@ export class Tablet {
       const canvas = document.querySelector('#view');
       const { width, height } = canvas;
       const frame = Number(canvas.dataset.frame);
-      const shown = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+      const copy = new OffscreenCanvas(width, height).getContext('2d');
+      copy.drawImage(canvas, 0, 0);
+      const shown = copy.getImageData(0, 0, width, height).data;
 
       const file = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
       const bitmap = await createImageBitmap(new Blob([file], { type: 'image/png' }));
