@@ -195,6 +195,7 @@ describe('the grid', () => {
       if (map.near[block] === map.far[block]) {
         assert.deepEqual([x % 1, y % 1], [0.5, 0.5]);
       } else {
+        assert.deepEqual([(4 * x) % 1, (4 * y) % 1], [0.5, 0.5]); // the middle of a part
         const bit = 4 * Math.floor(4 * (y % 1)) + Math.floor(4 * (x % 1));
         assert.equal((map.mask[block] >> bit) & 1, map.mask[block] === 0xffff ? 1 : 0);
       }
