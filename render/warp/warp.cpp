@@ -21,7 +21,7 @@ constexpr double kBeside = 2;
 struct Corner {
     glm::dvec2 uv{0};      ///< 0 to 1, from the top left
     glm::dvec4 clip{0};    ///< x, y, 1 / scale of both, reciprocal distance
-    glm::dvec2 behind{0};  ///< where the image shows what lies behind this corner
+    glm::dvec3 behind{0};  ///< the colour of what lies behind this corner
     int steps = 0;
     std::size_t block = 0;
 };
@@ -31,6 +31,14 @@ bool is_step(int low, int high) { return high - low > kGap || (low == 0 && high 
 std::size_t index_of(int columns, int column, int row) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(column);
+}
+
+/// Row by row, with the block itself.
+template <class Visit>
+void for_each_beside(const DepthMap& map, int column, int row, int blocks, Visit visit) {
+    for (int y = std::max(row - blocks, 0); y <= std::min(row + blocks, map.rows - 1); ++y)
+        for (int x = std::max(column - blocks, 0); x <= std::min(column + blocks, map.columns - 1); ++x)
+            visit(index_of(map.columns, x, y));
 }
 
 /// Of a block, or of a part of it that shows what is farther.
@@ -102,10 +110,12 @@ private:
     void fill(const std::array<const Corner*, 3>& corners, const glm::dvec3& weights, std::size_t pixel,
               Layer layer) {
         glm::dvec2 uv(0);
+        glm::dvec3 behind(0);
         double sum = 0, distance = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const double weight = weights[static_cast<int>(i)] / corners[i]->clip.z;
             uv += weight * corners[i]->uv;
+            behind += weight * corners[i]->behind;
             distance += weights[static_cast<int>(i)] * corners[i]->clip.w;
             sum += weight;
         }
@@ -113,14 +123,13 @@ private:
         if (layer == Layer::hidden) {
             const Corner& far =
                 **std::ranges::min_element(corners, {}, [](const Corner* corner) { return corner->steps; });
-            uv = far.behind;
             distance = far.clip.w - kBehind;
         } else if (!is_in_layer(uv, layer)) {
             return;
         }
         if (distance <= nearest_[pixel]) return;
         nearest_[pixel] = distance;
-        const glm::dvec3 color = sampled(from_, uv);
+        const glm::dvec3 color = layer == Layer::hidden ? behind / sum : sampled(from_, uv);
         for (unsigned k = 0; k < 3; ++k)
             to_.rgba[4 * pixel + k] = static_cast<std::uint8_t>(std::lround(color[static_cast<int>(k)]));
     }
@@ -168,23 +177,23 @@ glm::dmat4 warp_matrix(const scene::Camera& from, const scene::Camera& to, doubl
 }
 
 Layers layers_of(const DepthMap& map) {
+    // The middle of a block with an edge has maybe the colour of what is nearer.
+    const auto reach = [&](std::size_t block) {
+        return map.far[block] + (map.near[block] != map.far[block] ? kGap : 0);
+    };
     Layers layers{map.near, map.far, map.mask, std::vector<std::uint32_t>(map.far.size())};
     for (int row = 0; row < map.rows; ++row)
         for (int column = 0; column < map.columns; ++column) {
             const std::size_t at = index_of(map.columns, column, row);
             std::size_t nearest = at, farthest = at;
             std::uint8_t lowest = map.far[at];
-            // The middle of a block with an edge has maybe the colour of what is nearer.
-            const auto reach = [&](std::size_t block) {
-                return map.far[block] + (map.near[block] != map.far[block] ? kGap : 0);
-            };
-            for (int y = std::max(row - 1, 0); y <= std::min(row + 1, map.rows - 1); ++y)
-                for (int x = std::max(column - 1, 0); x <= std::min(column + 1, map.columns - 1); ++x) {
-                    const std::size_t beside = index_of(map.columns, x, y);
-                    if (map.near[beside] > map.near[nearest]) nearest = beside;
-                    lowest = std::min(lowest, map.far[beside]);
-                    if (reach(beside) < reach(farthest)) farthest = beside;
-                }
+            for_each_beside(map, column, row, 1, [&](std::size_t beside) {
+                if (map.near[beside] > map.near[nearest]) nearest = beside;
+                lowest = std::min(lowest, map.far[beside]);
+            });
+            for_each_beside(map, column, row, 2, [&](std::size_t beside) {
+                if (reach(beside) < reach(farthest)) farthest = beside;
+            });
             layers.farthest[at] = static_cast<std::uint32_t>(farthest);
             if (map.near[at] != map.far[at]) continue;
             if (is_step(map.near[at], map.near[nearest])) {
@@ -220,7 +229,7 @@ scene::Image warped(const scene::Image& image, const DepthMap& depth, const scen
                 corner.block = index_of(depth.columns, std::clamp(column - 1, 0, depth.columns - 1),
                                         std::clamp(row - 1, 0, depth.rows - 1));
                 corner.uv = {place(column, depth.columns), place(row, depth.rows)};
-                corner.behind = middle_of_farther(depth, layers.farthest[corner.block]);
+                corner.behind = sampled(image, middle_of_farther(depth, layers.farthest[corner.block]));
                 corner.steps = (*values)[corner.block];
                 corner.clip = matrix * glm::dvec4(2 * corner.uv.x - 1, 1 - 2 * corner.uv.y, 1,
                                                   depth.scale * corner.steps / DepthMap::kSteps);

@@ -29,7 +29,7 @@ scene::Image warped(const scene::Image& image, const DepthMap& depth, const scen
 struct Layers {
     std::vector<std::uint8_t> near, far;
     std::vector<std::uint16_t> mask;
-    /// The block beside it, or itself, that shows what is farthest.
+    /// Of those up to two blocks beside it, or itself, the one that shows what is farthest.
     std::vector<std::uint32_t> farthest;
 };
 Layers layers_of(const DepthMap& map);

@@ -130,9 +130,12 @@ protocol::Quality Engine::refined_quality(Refinement refinement) const {
 
 std::size_t Engine::choose_level() {
     const protocol::QualityState& wanted = room_->state().quality;
-    const double target = preferred_target(wanted.latency_target_ms, wanted.preference);
     const auto holder = clients_.find(room_->holder().value_or(""));
     const bool waits = holder != clients_.end() && holder->second.wanted.count > 0;
+    const bool warps = holder != clients_.end() && holder->second.wanted.depth && wants_depth();
+    const double target = preferred_target(
+        warps ? warped_target(wanted.latency_target_ms, holders_link()) : wanted.latency_target_ms,
+        wanted.preference);
     // The first pictures to a client are small: its link may be slow, and they cannot be taken back.
     if (std::isfinite(target) && waits && !holder->second.wanted.link) return 0;
     return choice_->choose({room_->view_size(), pixel_budget_, target, holders_link()}, base::Clock::now());

@@ -48,30 +48,36 @@ struct DecodedFrame {
 DecodedFrame decoded(const Frame& frame, const plan::View& glass) {
     auto image = io::decode_image({reinterpret_cast<const char*>(frame.file.data()), frame.file.size()});
     if (!image) throw std::runtime_error("an image that was encoded cannot be read: " + image.error());
+    DecodedFrame result{resized(*image, glass.width, glass.height), {}};
+    if (frame.depth.empty()) return result;
     auto depth =
         warp::decode(frame.depth, frame.depth_size.columns, frame.depth_size.rows, frame.depth_scale);
     if (!depth) throw std::runtime_error("a depth map that was encoded cannot be read");
-    return {resized(*image, glass.width, glass.height), *std::move(depth)};
+    result.depth = *std::move(depth);
+    return result;
 }
 
 /// Draws and encodes frames.
 class FrameSource {
 public:
-    FrameSource(const std::vector<plan::View>& states, renderer::Renderer& renderer,
+    FrameSource(const std::vector<plan::View>& states, bool has_depth, renderer::Renderer& renderer,
                 engine::JpegEncoder& jpeg)
-        : states_(states), renderer_(renderer), jpeg_(jpeg) {}
+        : states_(states), has_depth_(has_depth), renderer_(renderer), jpeg_(jpeg) {}
 
     Frame draw(std::size_t state, const Setting& setting) {
         plan::RenderJob job(view_with(states_[state], setting));
-        job.depth_size = warp::depth_map_size(states_[state].width, states_[state].height, blocks_.pixels());
+        const plan::View& view = states_[state];
+        if (has_depth_) job.depth_size = warp::depth_map_size(view.width, view.height, blocks_.pixels());
         while (!renderer_.step(job)) {
         }
         Frame frame{{state, setting},
                     jpeg_.encode(job.image, setting.jpeg_quality, setting.subsampled),
-                    warp::encode(job.depth),
+                    {},
                     job.depth_size,
                     job.depth.scale};
         frame.what.bytes = frame.file.size();
+        if (!has_depth_) return frame;
+        frame.depth = warp::encode(job.depth);
         frame.what.depth_bytes = frame.depth.size();
         blocks_.took(frame.what.depth_bytes, frame.what.bytes);
         return frame;
@@ -79,6 +85,7 @@ public:
 
 private:
     const std::vector<plan::View>& states_;
+    bool has_depth_;
     renderer::Renderer& renderer_;
     engine::JpegEncoder& jpeg_;
     warp::BlockChoice blocks_;
@@ -267,17 +274,21 @@ scene::Image shifted(const DecodedFrame& frame, const scene::Camera& from, const
     const bool is_turned = glm::distance(scene::view_direction(from), scene::view_direction(to)) > kSame ||
                            glm::distance(from.up, to.up) > kSame;
     if (is_turned || from == to) return frame.image;
-    warp::DepthMap plane = frame.depth;
-    plane.scale = 1 / scene::focus_distance(from);
-    std::ranges::fill(plane.near, static_cast<std::uint8_t>(warp::DepthMap::kSteps));
-    plane.far = plane.near;
-    std::ranges::fill(plane.mask, static_cast<std::uint16_t>(0xffff));
+    const auto nearest = static_cast<std::uint8_t>(warp::DepthMap::kSteps);
+    const warp::DepthMap plane{1, 1, 1 / scene::focus_distance(from), {nearest}, {nearest}, {0xffff}};
     return warp::warped(frame.image, plane, from, to, background);
 }
 
 using Errors = std::array<double, kPredictions.size()>;
 
-Errors errors_of(const DecodedFrame& frame, const DecodedFrame& without_delay, const plan::View& drawn,
+/// What is on the glass, and the camera that the server drew it from.
+struct Shown {
+    DecodedFrame frame;
+    scene::Camera camera;
+};
+
+/// `plain`: without depth.
+Errors errors_of(const Shown& plain, const Shown& with_depth, const DecodedFrame& without_delay,
                  const plan::View& now, const scene::Image& judge) {
     const auto error = [&](const scene::Image& shown) {
         const std::vector<float> values = compare::flip(shown, judge);
@@ -285,11 +296,14 @@ Errors errors_of(const DecodedFrame& frame, const DecodedFrame& without_delay, c
     };
     const warp::Background background = background_of(now);
     Errors errors;
-    errors.fill(error(frame.image));
-    if (drawn.camera == now.camera) return errors;
-    errors[1] = error(shifted(frame, drawn.camera, now.camera, background));
-    errors[3] = error(without_delay.image);
-    errors[2] = error(warp::warped(frame.image, frame.depth, drawn.camera, now.camera, background));
+    errors[0] = errors[1] = error(plain.frame.image);
+    if (plain.camera != now.camera)
+        errors[1] = error(shifted(plain.frame, plain.camera, now.camera, background));
+    const auto& [image, depth] = with_depth.frame;
+    const bool is_there = with_depth.camera == now.camera;
+    errors[2] =
+        error(is_there ? image : warp::warped(image, depth, with_depth.camera, now.camera, background));
+    errors[3] = is_there ? errors[2] : error(without_delay.image);
     return errors;
 }
 
@@ -329,9 +343,9 @@ std::vector<SimulatedLink> usual_links() {
 namespace {
 
 /// What came of a delivery, but for its errors.
-GlassErrors counted(const std::vector<std::shared_ptr<const Frame>>& shown,
-                    const std::vector<plan::View>& states) {
-    GlassErrors result;
+GlassErrors::Delivered counted(const std::vector<std::shared_ptr<const Frame>>& shown,
+                               const std::vector<plan::View>& states) {
+    GlassErrors::Delivered result;
     double frozen_ms = 0;
     for (std::size_t k = 1; k < shown.size(); ++k) {
         const bool is_new = shown[k] != shown[k - 1];
@@ -354,13 +368,19 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
                                          renderer::Renderer& renderer, const PartDone& done) {
     // Each link has sources of its own: what one chooses is nothing to another.
     engine::JpegEncoder jpeg;
-    std::vector<FrameSource> without_delay(links.size(), FrameSource(states, renderer, jpeg));
-    std::vector<std::vector<std::shared_ptr<const Frame>>> shown;
+    using Glass = std::vector<std::shared_ptr<const Frame>>;
+    std::vector<FrameSource> without_delay(links.size(), FrameSource(states, true, renderer, jpeg));
+    std::vector<Glass> plain, with_depth;
     std::vector<GlassErrors> results;
     for (const SimulatedLink& link : links) {
-        FrameSource source(states, renderer, jpeg);
-        shown.push_back(Delivery(states, link, demand.levels, demand.target_ms, source).run());
-        results.push_back(counted(shown.back(), states));
+        FrameSource source(states, false, renderer, jpeg), depth_source(states, true, renderer, jpeg);
+        plain.push_back(Delivery(states, link, demand.levels, demand.target_ms, source).run());
+        const engine::Link measured{link.bytes_per_second, duration_of(link.round_trip_ms)};
+        const double target_ms = engine::warped_target(demand.target_ms, measured);
+        with_depth.push_back(Delivery(states, link, demand.levels, target_ms, depth_source).run());
+        GlassErrors& result = results.emplace_back();
+        result.delivered[0] = result.delivered[1] = counted(plain.back(), states);
+        result.delivered[2] = result.delivered[3] = counted(with_depth.back(), states);
     }
     // An image is judged while the next one is drawn.
     std::future<void> judged;
@@ -373,13 +393,16 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
         std::vector<Frame> fresh;
         fresh.reserve(links.size());
         for (std::size_t i = 0; i < links.size(); ++i)
-            fresh.push_back(without_delay[i].draw(k, shown[i][k]->what.setting));
+            fresh.push_back(without_delay[i].draw(k, with_depth[i][k]->what.setting));
         if (judged.valid()) judged.get();
         judged = std::async(std::launch::async, [&, k, judge = std::move(job.image), fresh] {
+            const auto shown = [&](const Glass& glass) {
+                const Frame& frame = *glass[k];
+                return Shown{decoded(frame, states[k]), states[frame.what.drawn].camera};
+            };
             for (std::size_t i = 0; i < links.size(); ++i) {
-                const Frame& frame = *shown[i][k];
-                const Errors errors = errors_of(decoded(frame, states[k]), decoded(fresh[i], states[k]),
-                                                states[frame.what.drawn], states[k], judge);
+                const Errors errors = errors_of(shown(plain[i]), shown(with_depth[i]),
+                                                decoded(fresh[i], states[k]), states[k], judge);
                 for (std::size_t p = 0; p < errors.size(); ++p) results[i].errors[p].push_back(errors[p]);
             }
         });

@@ -30,8 +30,8 @@ std::vector<SimulatedLink> usual_links();
 inline constexpr double kRefreshesPerSecond = 60;
 
 /// What a page makes of its last frame until the next: nothing; shifts and scales it where the camera only
-/// moves or zooms; warps it by its depth. The last is what a perfect one would make of it: the same level
-/// without delay.
+/// moves or zooms; warps it by its depth, which its frames hold then. The last is what a perfect warp would
+/// make of it: the same level without delay.
 inline constexpr std::array kPredictions{"none", "shift and scale", "warp", "no delay"};
 
 /// How the server draws what is shown at a refresh.
@@ -44,17 +44,21 @@ struct ShownFrame {
 /// The error at the glass: mean FLIP between what a client's glass shows at a refresh and what a server
 /// without delay would show then, with every triangle and kGlassSamples samples a pixel.
 struct GlassErrors {
-    std::array<std::vector<double>, kPredictions.size()> errors;  ///< of each judged refresh, by prediction
-    int frames = 0;                                               ///< that were shown
-    double bytes = 0, depth_bytes = 0;                            ///< of all of them
-    double longest_ms = 0;  ///< that the same frame was shown while another was due
+    struct Delivered {
+        int frames = 0;                     ///< that were shown
+        double bytes = 0, depth_bytes = 0;  ///< of all of them
+        double longest_ms = 0;              ///< that the same frame was shown while another was due
+    };
+    /// By prediction; errors of each judged refresh.
+    std::array<std::vector<double>, kPredictions.size()> errors;
+    std::array<Delivered, kPredictions.size()> delivered;
 };
 inline constexpr int kGlassSamples = 16;
 
 /// How the server draws, and what is judged.
 struct GlassDemand {
     protocol::LevelTable levels;  ///< frames are taken to cost what it says
-    double target_ms = 50;        ///< from an input to its frame, less the round trip
+    double target_ms = 50;        ///< from an input to its frame, less the round trip; see warped_target()
     std::size_t every = 1;        ///< refresh is judged
 };
 

@@ -6,6 +6,9 @@ import { Warp, warpMatrix } from '../warp/warp.js';
  * @import { DepthMap } from '../warp/depth-map.js'
  */
 
+/** Renderers without a graphics card: to warp a frame takes them longer than to wait for the next. */
+const SOFTWARE = /SwiftShader|llvmpipe|softpipe|Software|Basic Render/i;
+
 /**
  * What a canvas shows a frame by.
  *
@@ -13,8 +16,18 @@ import { Warp, warpMatrix } from '../warp/warp.js';
  * @param {() => void} redraw what is on it was lost
  */
 export function screenOf(canvas, redraw) {
-  const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: true });
+  const gl = hasGraphicsCard() && canvas.getContext('webgl2', { alpha: false, antialias: false, depth: true });
   return gl ? new WarpScreen(canvas, gl, redraw) : new FlatScreen(canvas);
+}
+
+/** A canvas that has WebGL shows nothing else: another one tells. */
+function hasGraphicsCard() {
+  const gl = globalThis.OffscreenCanvas && new OffscreenCanvas(1, 1).getContext('webgl2');
+  if (!gl) return false;
+  const told = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return !SOFTWARE.test(name);
 }
 
 /** Without WebGL 2: shows frames as they are. */
@@ -43,8 +56,8 @@ class WarpScreen {
   #warp;
   /** @type {?{bitmap: ImageBitmap, map: ?DepthMap}} */
   #frame = null;
-  /** Whether the frame is drawn as it is. */
-  #isPlain = false;
+  /** What is on the canvas: the frame from where, or as it is; null: it is to be drawn. @type {?string} */
+  #drawn = null;
 
   constructor(canvas, gl, redraw) {
     this.#canvas = canvas;
@@ -53,7 +66,7 @@ class WarpScreen {
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     canvas.addEventListener('webglcontextrestored', () => {
       this.#warp = new Warp(gl);
-      this.#isPlain = false;
+      this.#drawn = null;
       if (!this.#frame) return;
       this.#warp.setFrame(this.#frame.bitmap, this.#frame.map);
       redraw();
@@ -66,19 +79,17 @@ class WarpScreen {
     this.#warp.setFrame(bitmap, map);
     this.#frame?.bitmap.close();
     this.#frame = { bitmap, map };
-    this.#isPlain = false;
+    this.#drawn = null;
   }
 
   /** As another camera sees the frame; null: as it is. @param {?{header: FrameHeader, to: Camera}} view */
   draw(view) {
-    if (view) {
-      const { camera, width, height, depth } = view.header;
-      const matrix = warpMatrix(camera, view.to, width / height);
-      this.#warp.draw({ matrix, backgroundTurns: depth?.backgroundTurns ?? false });
-    } else if (!this.#isPlain) {
-      this.#warp.drawPlain();
-    }
-    this.#isPlain = !view;
+    const matrix = view && warpMatrix(view.header.camera, view.to, view.header.width / view.header.height);
+    const wanted = String(matrix);
+    if (wanted === this.#drawn) return;
+    this.#drawn = wanted;
+    if (matrix) this.#warp.draw({ matrix, backgroundTurns: view.header.depth?.backgroundTurns ?? false });
+    else this.#warp.drawPlain();
   }
 }
 

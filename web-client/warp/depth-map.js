@@ -118,8 +118,11 @@ async function inflated(bytes, most) {
   }
 }
 
+/** So many blocks beside each are looked at for what is farthest. */
+const REACH = 2;
+
 /**
- * What each block has beside it is gathered first from its row, then from three rows.
+ * What each block has beside it is gathered first from its row, then from the rows.
  *
  * @param {DepthMap} map
  * @returns {Layers}
@@ -136,14 +139,20 @@ export function layersOf({ columns, rows, near, far, mask }) {
       const right = column < columns - 1 ? i + 1 : i;
       nearest[i] = Math.max(near[left], near[i], near[right]);
       lowest[i] = Math.min(far[left], far[i], far[right]);
-      farthest[i] = farther(near, far, farther(near, far, left, i), right);
+      farthest[i] = i - Math.min(column, REACH);
+      for (let k = farthest[i] + 1; k <= i + Math.min(columns - 1 - column, REACH); k += 1) {
+        farthest[i] = farther(near, far, farthest[i], k);
+      }
     }
   }
   for (let row = 0, i = 0; row < rows; row += 1) {
     const above = row > 0 ? columns : 0;
     const below = row < rows - 1 ? columns : 0;
     for (let column = 0; column < columns; column += 1, i += 1) {
-      const beside = farther(near, far, farther(near, far, farthest[i - above], farthest[i]), farthest[i + below]);
+      let beside = farthest[i - columns * Math.min(row, REACH)];
+      for (let k = -Math.min(row, REACH) + 1; k <= Math.min(rows - 1 - row, REACH); k += 1) {
+        beside = farther(near, far, beside, farthest[i + columns * k]);
+      }
       layers.farthest[i] = farther(near, far, i, beside);
       if (near[i] !== far[i]) continue;
       const high = Math.max(nearest[i - above], nearest[i], nearest[i + below]);

@@ -29,17 +29,17 @@ export class Triangles {
 
 /**
  * The triangles of each layer. The grid's corners are the blocks' centres, and a row and a column beyond each side, row
- * by row. No triangle of the layers near and far spans a step; in the layer hidden all do, and the farthest of their
- * corners is the last.
+ * by row. No triangle of the layers near and far spans a step, and where these are the same, it is in `smooth` instead.
+ * In the layer hidden all do, and the farthest of their corners is the last.
  *
  * @param {DepthMap} map
  * @param {Layers} layers
- * @param {{near: Triangles, far: Triangles, hidden: Triangles}} triangles
+ * @param {{smooth: Triangles, near: Triangles, far: Triangles, hidden: Triangles}} triangles
  */
 export function buildTriangles({ columns, rows, far }, layers, triangles) {
   const width = columns + 2;
   const cells = (columns + 1) * (rows + 1);
-  for (const list of [triangles.near, triangles.far, triangles.hidden]) list.clear(width * (rows + 2), 6 * cells);
+  for (const list of Object.values(triangles)) list.clear(width * (rows + 2), 6 * cells);
   for (let row = 0; row <= rows; row += 1) {
     const upper = Math.max(row - 1, 0) * columns;
     const lower = Math.min(row, rows - 1) * columns;
@@ -51,9 +51,11 @@ export function buildTriangles({ columns, rows, far }, layers, triangles) {
       const c = lower + left;
       const d = lower + right;
       const corner = row * width + column;
-      addSurface(triangles.near, layers.near, corner, width, a, b, c, d);
       if (hasTwo(layers, a) || hasTwo(layers, b) || hasTwo(layers, c) || hasTwo(layers, d)) {
+        addSurface(triangles.near, layers.near, corner, width, a, b, c, d);
         addSurface(triangles.far, layers.far, corner, width, a, b, c, d);
+      } else {
+        addSurface(triangles.smooth, layers.near, corner, width, a, b, c, d);
       }
       if (!isStep(Math.min(far[a], far[b], far[c], far[d]), Math.max(far[a], far[b], far[c], far[d]))) continue;
       addHidden(triangles.hidden, corner, corner + 1, corner + width, far[a], far[b], far[c]);

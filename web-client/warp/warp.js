@@ -67,10 +67,10 @@ precision highp sampler2D;
 precision highp usampler2D;
 `;
 
-/** One triangle over all. */
+/** One triangle over all, behind everything. */
 const PLAIN_VERTEX = `${PRECISION}
 void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
+  gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 1, 1);
 }`;
 
 const PLAIN_FRAGMENT = `${PRECISION}
@@ -137,6 +137,16 @@ void main() {
   gl_Position = vec4(clip.xy, depthOf(clip), clip.z);
 }`;
 
+/** Where both layers are the same. */
+const SMOOTH_FRAGMENT = `${PRECISION}
+uniform sampler2D frame;
+in vec2 uv;
+out vec4 color;
+
+void main() {
+  color = vec4(textureLod(frame, uv, 0.0).rgb, 1);
+}`;
+
 const SURFACE_FRAGMENT = `${PRECISION}
 uniform sampler2D frame;
 uniform usampler2D blocks;
@@ -158,30 +168,30 @@ void main() {
   color = vec4(textureLod(frame, uv, 0.0).rgb, 1);
 }`;
 
-/** The last corner of a triangle tells its colour and depth; what has its own behind the eye is not seen. */
+/** The last corner of a triangle tells its depth; what has its own behind the eye is not seen. */
 const HIDDEN_VERTEX = `${CORNER}
+uniform sampler2D frame;
 const float BEHIND = 1.0 / 1048576.0;  // by how much what is hidden lies behind what is seen, in the depth buffer
-flat out vec2 behind;
+out vec3 behind;
 flat out float depth;
 
 void main() {
   ivec2 corner = cornerOf(gl_VertexID);
   uint block = blockOf(corner).y;
   uvec2 place = uvec2(block >> 8, block >> ${8 + PLACE_BITS}) & ${(1 << PLACE_BITS) - 1}u;
-  behind = vec2(place) / vec2(${PLACES} * textureSize(blocks, 0));
+  behind = textureLod(frame, vec2(place) / vec2(${PLACES} * textureSize(blocks, 0)), 0.0).rgb;
   vec4 clip = warped(placeOf(corner), block & 0xffu);
   depth = clip.z > 0.0 ? 0.5 + 0.5 * depthOf(clip) / clip.z + BEHIND : 1.0;
   gl_Position = vec4(clip.xy, 0, clip.z);
 }`;
 
 const HIDDEN_FRAGMENT = `${PRECISION}
-uniform sampler2D frame;
-flat in vec2 behind;
+in vec3 behind;
 flat in float depth;
 out vec4 color;
 
 void main() {
-  color = vec4(textureLod(frame, behind, 0.0).rgb, 1);
+  color = vec4(behind, 1);
   gl_FragDepth = depth;
 }`;
 
@@ -196,13 +206,13 @@ void main() {
  */
 export class Warp {
   #gl;
-  /** @type {?{plain: Program, surface: Program, hidden: Program}} null: the context was lost before */
+  /** @type {?{plain: Program, smooth: Program, surface: Program, hidden: Program}} null: the context was lost before */
   #programs = null;
   #frame;
   #blocks;
   #indices;
-  /** Of the three layers, one behind the other in the buffer of indices. */
-  #triangles = { near: new Triangles(), far: new Triangles(), hidden: new Triangles() };
+  /** One list behind the other in the buffer of indices. */
+  #triangles = { smooth: new Triangles(), near: new Triangles(), far: new Triangles(), hidden: new Triangles() };
   #packed = new Uint32Array(0);
   /** @type {?number} the reciprocal distance of the frame's nearest surface; null: the frame has no depth map */
   #scale = null;
@@ -212,13 +222,14 @@ export class Warp {
   constructor(gl) {
     this.#gl = gl;
     const plain = programOf(gl, PLAIN_VERTEX, PLAIN_FRAGMENT);
+    const smooth = programOf(gl, SURFACE_VERTEX, SMOOTH_FRAGMENT);
     const surface = programOf(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
     const hidden = programOf(gl, HIDDEN_VERTEX, HIDDEN_FRAGMENT);
     this.#frame = textureOf(gl, FRAME_UNIT, gl.LINEAR);
     this.#blocks = textureOf(gl, BLOCKS_UNIT, gl.NEAREST);
     this.#indices = gl.createBuffer();
-    if (!plain || !surface || !hidden) return;
-    this.#programs = { plain, surface, hidden };
+    if (!plain || !smooth || !surface || !hidden) return;
+    this.#programs = { plain, smooth, surface, hidden };
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.#indices);
     // Colours as they are in the file.
     gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
@@ -246,12 +257,13 @@ export class Warp {
     gl.activeTexture(gl.TEXTURE0 + BLOCKS_UNIT);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG32UI, columns, rows, 0, gl.RG_INTEGER, gl.UNSIGNED_INT, this.#packed);
 
-    const { near, far, hidden } = this.#triangles;
     buildTriangles(map, layers, this.#triangles);
-    const size = near.indices.BYTES_PER_ELEMENT;
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, size * (near.length + far.length + hidden.length), gl.DYNAMIC_DRAW);
+    const lists = Object.values(this.#triangles);
+    const size = lists[0].indices.BYTES_PER_ELEMENT;
+    const count = lists.reduce((sum, { length }) => sum + length, 0);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, size * count, gl.DYNAMIC_DRAW);
     let at = 0;
-    for (const { indices, length } of [near, far, hidden]) {
+    for (const { indices, length } of lists) {
       // A length of 0 is all of the array.
       if (length > 0) gl.bufferSubData(gl.ELEMENT_ARRAY_BUFFER, size * at, indices, 0, length);
       at += length;
@@ -262,12 +274,9 @@ export class Warp {
   drawPlain() {
     const gl = this.#gl;
     if (!this.#programs || gl.isContextLost()) return;
-    const { program, uniforms } = this.#programs.plain;
     gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
     gl.disable(gl.DEPTH_TEST);
-    gl.useProgram(program);
-    gl.uniform2i(uniforms.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    this.#drawFrame(this.#programs.plain);
   }
 
   /**
@@ -277,23 +286,29 @@ export class Warp {
    */
   draw({ matrix, backgroundTurns }) {
     const gl = this.#gl;
-    this.drawPlain();
+    if (this.#scale === null) this.drawPlain();
     if (!this.#programs || gl.isContextLost() || this.#scale === null) return;
-    const { surface, hidden } = this.#programs;
-    const { near, far, hidden: behind } = this.#triangles;
+    const { plain, smooth, surface, hidden } = this.#programs;
+    const { smooth: same, near, far, hidden: behind } = this.#triangles;
     this.#matrix.set(matrix);
     for (let i = 12; i < 16; i += 1) this.#matrix[i] = matrix[i] * (i < 15 ? this.#scale : 1);
+    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
     gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
     gl.clear(gl.DEPTH_BUFFER_BIT);
 
+    this.#use(smooth, backgroundTurns);
+    gl.uniform1i(smooth.uniforms.isNear, 1);
+    this.#drawTriangles(same, 0);
     this.#use(surface, backgroundTurns);
     gl.uniform1i(surface.uniforms.isNear, 1);
-    this.#drawTriangles(near, 0);
+    this.#drawTriangles(near, same.length);
     gl.uniform1i(surface.uniforms.isNear, 0);
-    this.#drawTriangles(far, near.length);
-    if (behind.length === 0) return;
+    this.#drawTriangles(far, same.length + near.length);
     this.#use(hidden, backgroundTurns);
-    this.#drawTriangles(behind, near.length + far.length);
+    this.#drawTriangles(behind, same.length + near.length + far.length);
+    // Last: what is covered by then costs nothing.
+    this.#drawFrame(plain);
   }
 
   delete() {
@@ -303,6 +318,13 @@ export class Warp {
     for (const texture of [this.#frame, this.#blocks]) gl.deleteTexture(texture);
     gl.deleteBuffer(this.#indices);
     this.#programs = null;
+  }
+
+  #drawFrame({ program, uniforms }) {
+    const gl = this.#gl;
+    gl.useProgram(program);
+    gl.uniform2i(uniforms.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
   #use({ program, uniforms }, backgroundTurns) {

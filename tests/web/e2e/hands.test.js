@@ -26,7 +26,7 @@ describe('hands on a tablet without WebGL 2 whose pictures are late', { skip: br
     server = await Server.start();
     link = await HeldLink.open(server.port);
     browser = await launchBrowser();
-    tablet = await Tablet.open(browser, link.address, { ...TABLET }, { hasWebGl: false });
+    tablet = await Tablet.open(browser, link.address, TABLET);
     await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
     await tablet.page.evaluate(() => {
       // Where the latest messages say that the fingers are.
@@ -208,7 +208,7 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
     server = await Server.start();
     link = await HeldLink.open(server.port);
     browser = await launchBrowser();
-    tablet = await Tablet.open(browser, link.address, SIZE);
+    tablet = await Tablet.open(browser, link.address, SIZE, { hasWebGl: true });
     await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
     await tablet.page.evaluate(countRefreshes);
   });

@@ -34,12 +34,16 @@ function rememberSockets() {
   };
 }
 
-/** Runs there, too: what WebGL draws can be looked at later, or there is no WebGL 2. */
-function changeWebGl({ isMissing }) {
+/** Runs there, too: the software that draws WebGL 2 counts as a graphics card, and what it draws can be looked at later. */
+function acceptWebGl() {
   const { getContext } = HTMLCanvasElement.prototype;
   HTMLCanvasElement.prototype.getContext = function changed(kind, options) {
-    if (kind === 'webgl2' && isMissing) return null;
     return getContext.call(this, kind, kind === 'webgl2' ? { ...options, preserveDrawingBuffer: true } : options);
+  };
+  const { getParameter } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.getParameter = function changed(what) {
+    const value = getParameter.call(this, what);
+    return typeof value === 'string' ? value.replace(/SwiftShader|llvmpipe/g, 'card') : value;
   };
 }
 
@@ -71,7 +75,7 @@ export class Tablet {
    * @param {{width: number, height: number, pixelRatio: number}} size
    * @param {import('playwright-core').BrowserContextOptions & {isFirstVisit?: boolean, hasWebGl?: boolean}} [options] more of the browser's
    */
-  static async open(browser, address, { width, height, pixelRatio }, { isFirstVisit = false, hasWebGl = true, ...options } = {}) {
+  static async open(browser, address, { width, height, pixelRatio }, { isFirstVisit = false, hasWebGl = false, ...options } = {}) {
     const tablet = new Tablet();
     const context = await browser.newContext({
       viewport: { width, height },
@@ -82,7 +86,7 @@ export class Tablet {
     });
     context.setDefaultTimeout(LIMIT_MS);
     await context.addInitScript(rememberSockets);
-    await context.addInitScript(changeWebGl, { isMissing: !hasWebGl });
+    if (hasWebGl) await context.addInitScript(acceptWebGl);
     if (!isFirstVisit) await context.addInitScript(rememberHelp);
     tablet.page = await context.newPage();
     tablet.wire = new Wire(tablet.page);

@@ -130,7 +130,7 @@ describe('the reciprocal distance at a place', () => {
 });
 
 describe('the grid', () => {
-  const lists = () => ({ near: new Triangles(), far: new Triangles(), hidden: new Triangles() });
+  const lists = () => ({ smooth: new Triangles(), near: new Triangles(), far: new Triangles(), hidden: new Triangles() });
   const trianglesOf = ({ indices, length }) =>
     Array.from({ length: length / 3 }, (_, i) => [...indices.subarray(3 * i, 3 * i + 3)]);
 
@@ -138,9 +138,9 @@ describe('the grid', () => {
     const map = await decoded(named('infinity'));
     const triangles = lists();
     buildTriangles(map, layersOf(map), triangles);
-    assert.equal(triangles.near.length, 3 * 2 * (map.columns + 1) * (map.rows + 1));
-    assert.equal(Math.max(...triangles.near.indices), (map.columns + 2) * (map.rows + 2) - 1);
-    assert.deepEqual([triangles.far.length, triangles.hidden.length], [0, 0]);
+    assert.equal(triangles.smooth.length, 3 * 2 * (map.columns + 1) * (map.rows + 1));
+    assert.equal(Math.max(...triangles.smooth.indices), (map.columns + 2) * (map.rows + 2) - 1);
+    assert.deepEqual([triangles.near.length, triangles.far.length, triangles.hidden.length], [0, 0, 0]);
   });
 
   test('has surfaces without steps, and what is hidden behind them ends in what is farthest', async () => {
@@ -153,11 +153,14 @@ describe('the grid', () => {
     const blockOf = (corner) =>
       clamped(Math.floor(corner / width) - 1, map.rows) * map.columns + clamped((corner % width) - 1, map.columns);
     const stepsOf = (steps) => (triangle) => triangle.map((corner) => steps[blockOf(corner)]);
-    for (const layer of ['near', 'far']) {
-      assert.ok(triangles[layer].length > 0, layer);
-      for (const steps of trianglesOf(triangles[layer]).map(stepsOf(layers[layer]))) {
-        assert.ok(!isStep(Math.min(...steps), Math.max(...steps)), `${layer}: ${steps}`);
+    for (const [list, layer] of [['smooth', 'near'], ['near', 'near'], ['far', 'far']]) {
+      assert.ok(triangles[list].length > 0, list);
+      for (const steps of trianglesOf(triangles[list]).map(stepsOf(layers[layer]))) {
+        assert.ok(!isStep(Math.min(...steps), Math.max(...steps)), `${list}: ${steps}`);
       }
+    }
+    for (const triangle of trianglesOf(triangles.smooth)) {
+      assert.deepEqual(stepsOf(layers.near)(triangle), stepsOf(layers.far)(triangle));
     }
     const hidden = trianglesOf(triangles.hidden).map(stepsOf(map.far));
     assert.ok(hidden.length > 0);
@@ -174,7 +177,7 @@ describe('the grid', () => {
     const triangles = lists();
     buildTriangles(map, layersOf(map), triangles);
     const last = (columns + 2) * (rows + 2) - 1;
-    assert.equal(triangles.near.indices[triangles.near.length - 1], last);
+    assert.equal(triangles.smooth.indices[triangles.smooth.length - 1], last);
     assert.ok(last > 0xffff);
   });
 
