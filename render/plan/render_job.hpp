@@ -39,7 +39,7 @@ struct RenderJob {
     /// (FrameStats::substitutes). Other images wait for all that they show.
     bool interactive = false;
     /// Set before the first step: with the first sample `depth` is filled; glass counts as what is in front
-    /// of what is seen through it. No columns: it is not.
+    /// of what is seen through it, if it is less than half clear. No columns: it is not.
     warp::DepthMapSize depth_size;
     warp::DepthMap depth;
     bool memory_released = false;  ///< by the renderer for the sample that is next: it has no more to release

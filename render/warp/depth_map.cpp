@@ -42,7 +42,8 @@ std::uint16_t widened(std::uint16_t mask) {
     return static_cast<std::uint16_t>(wide | wide << 4U | wide >> 4U);
 }
 
-/// Divides a block in the middle between its nearest part and its farthest. None where it is a slope.
+/// Divides a block in the middle between its nearest part and its farthest. None where it is a slope, whose
+/// parts lie one after the other.
 std::optional<Divided> divided_of(const Parts& parts, int lowest, int highest) {
     const int middle = (lowest + highest) / 2;
     int below = lowest, above = highest;
@@ -54,7 +55,7 @@ std::optional<Divided> divided_of(const Parts& parts, int lowest, int highest) {
         above = std::min(above, is_near ? part : above);
         below = std::max(below, is_near ? below : part);
     }
-    if (above - below < kEdge) return {};
+    if (above - below < std::max(kEdge, (highest - lowest) / 2)) return {};
     const auto near = static_cast<std::uint16_t>(mask);
     return Divided{mean(parts, near), mean(parts, static_cast<std::uint16_t>(~near)), widened(near)};
 }

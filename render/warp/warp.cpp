@@ -22,11 +22,11 @@ struct Corner {
     glm::dvec2 uv{0};      ///< 0 to 1, from the top left
     glm::dvec4 clip{0};    ///< x, y, 1 / scale of both, reciprocal distance
     glm::dvec3 behind{0};  ///< the colour of what lies behind this corner
-    int steps = 0;
+    int steps = 0, slope = 0;
     std::size_t block = 0;
 };
 
-bool is_step(int low, int high) { return high - low > kGap || (low == 0 && high > 0); }
+bool is_step(int low, int high, int slope) { return high - low > kGap + 2 * slope || (low == 0 && high > 0); }
 
 std::size_t index_of(int columns, int column, int row) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
@@ -176,31 +176,59 @@ glm::dmat4 warp_matrix(const scene::Camera& from, const scene::Camera& to, doubl
            view_from_image;
 }
 
+/// Reciprocal distances are linear in the image where a surface is a plane: it rises on both sides alike.
+std::vector<std::uint8_t> slopes_of(const std::vector<std::uint8_t>& steps, int columns, int rows) {
+    std::vector<std::uint8_t> slopes;
+    slopes.reserve(steps.size());
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const auto rise = [&](int x, int y) {
+                return std::abs(
+                    steps[index_of(columns, column, row)] -
+                    steps[index_of(columns, std::clamp(x, 0, columns - 1), std::clamp(y, 0, rows - 1))]);
+            };
+            // At a side of the image the other one counts.
+            const int left = rise(column > 0 ? column - 1 : 1, row);
+            const int right = rise(column + 1 < columns ? column + 1 : column - 1, row);
+            const int above = rise(column, row > 0 ? row - 1 : 1);
+            const int below = rise(column, row + 1 < rows ? row + 1 : row - 1);
+            slopes.push_back(static_cast<std::uint8_t>(
+                std::min(std::min(left, right) + std::min(above, below), DepthMap::kSteps)));
+        }
+    return slopes;
+}
+
 Layers layers_of(const DepthMap& map) {
     // The middle of a block with an edge has maybe the colour of what is nearer.
     const auto reach = [&](std::size_t block) {
         return map.far[block] + (map.near[block] != map.far[block] ? kGap : 0);
     };
-    Layers layers{map.near, map.far, map.mask, std::vector<std::uint32_t>(map.far.size())};
+    Layers layers{map.near,
+                  map.far,
+                  map.mask,
+                  slopes_of(map.near, map.columns, map.rows),
+                  slopes_of(map.far, map.columns, map.rows),
+                  std::vector<std::uint32_t>(map.far.size())};
     for (int row = 0; row < map.rows; ++row)
         for (int column = 0; column < map.columns; ++column) {
             const std::size_t at = index_of(map.columns, column, row);
-            std::size_t nearest = at, farthest = at;
-            std::uint8_t lowest = map.far[at];
+            std::size_t nearest = at, lowest = at, farthest = at;
             for_each_beside(map, column, row, 1, [&](std::size_t beside) {
                 if (map.near[beside] > map.near[nearest]) nearest = beside;
-                lowest = std::min(lowest, map.far[beside]);
+                if (map.far[beside] < map.far[lowest]) lowest = beside;
             });
             for_each_beside(map, column, row, 2, [&](std::size_t beside) {
                 if (reach(beside) < reach(farthest)) farthest = beside;
             });
             layers.farthest[at] = static_cast<std::uint32_t>(farthest);
             if (map.near[at] != map.far[at]) continue;
-            if (is_step(map.near[at], map.near[nearest])) {
+            const int near_slope = std::min(layers.near_slope[at], layers.near_slope[nearest]);
+            const int far_slope = std::min(layers.far_slope[at], layers.far_slope[lowest]);
+            if (is_step(map.near[at], map.near[nearest], near_slope)) {
                 layers.near[at] = map.near[nearest];
                 layers.mask[at] = 0;  // it belongs to the other layer
-            } else if (is_step(lowest, map.far[at])) {
-                layers.far[at] = lowest;
+            } else if (is_step(map.far[lowest], map.far[at], far_slope)) {
+                layers.far[at] = map.far[lowest];
             }
         }
     return layers;
@@ -231,6 +259,7 @@ scene::Image warped(const scene::Image& image, const DepthMap& depth, const scen
                 corner.uv = {place(column, depth.columns), place(row, depth.rows)};
                 corner.behind = sampled(image, middle_of_farther(depth, layers.farthest[corner.block]));
                 corner.steps = (*values)[corner.block];
+                corner.slope = (layer == Layer::near ? layers.near_slope : layers.far_slope)[corner.block];
                 corner.clip = matrix * glm::dvec4(2 * corner.uv.x - 1, 1 - 2 * corner.uv.y, 1,
                                                   depth.scale * corner.steps / DepthMap::kSteps);
                 // Of what it sees: the reciprocal of the distance along the view.
@@ -253,7 +282,8 @@ scene::Image warped(const scene::Image& image, const DepthMap& depth, const scen
                     const std::array<const Corner*, 3> three{cell[triangle[0]], cell[triangle[1]],
                                                              cell[triangle[2]]};
                     const auto [low, high] = std::minmax({three[0]->steps, three[1]->steps, three[2]->steps});
-                    if (is_step(low, high) == (layer == Layer::hidden)) raster.draw(three, layer);
+                    const int slope = std::min({three[0]->slope, three[1]->slope, three[2]->slope});
+                    if (is_step(low, high, slope) == (layer == Layer::hidden)) raster.draw(three, layer);
                 }
             }
     }

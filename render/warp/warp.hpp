@@ -29,12 +29,16 @@ scene::Image warped(const scene::Image& image, const DepthMap& depth, const scen
 struct Layers {
     std::vector<std::uint8_t> near, far;
     std::vector<std::uint16_t> mask;
+    /// By how much the layer rises from a block to the next beside and below it, together: on the side where
+    /// that is less.
+    std::vector<std::uint8_t> near_slope, far_slope;
     /// Of those up to two blocks beside it, or itself, the one that shows what is farthest.
     std::vector<std::uint32_t> farthest;
 };
 Layers layers_of(const DepthMap& map);
 
-/// A triangle of the grid that spans more steps is no surface, and neither is one that reaches infinity.
+/// A triangle of the grid that spans more steps, beside twice its slope, is no surface, and neither is one
+/// that reaches infinity.
 inline constexpr int kGap = 16;
 
 }  // namespace vrut::warp

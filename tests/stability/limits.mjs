@@ -100,6 +100,13 @@ export const ROWS = [
     beyond: 'a client that sends more than 10,000 messages a second is read more slowly, and none is lost',
   },
   {
+    what: 'a frame that is warped until the next one comes',
+    studies: ['warped-turns', 'warped-looks', 'warped-zooms', 'warped-glass', 'warped-mirrors', 'warped-bars', 'warped-parts'],
+    holds: (turns, looks, zooms, glass, mirrors) =>
+      `nearer to the truth than as it is, in turns up to ${short(turns.to)} degrees, looks aside up to ${short(looks.to)} degrees, and up to ${short(zooms.to)} times as near; seen through glass or in mirrors, in turns up to ${short(Math.min(glass.to, mirrors.to))} degrees`,
+    beyond: 'the page warps turns up to 20 degrees, lags behind beyond, and stops at 35',
+  },
+  {
     what: 'slow links',
     studies: ['slow-links', 'long-links', 'stalls'],
     tests: [['tests/stability/links_test.cpp', 'frames and patches arrive as young through HAProxy as directly']],

@@ -128,6 +128,16 @@ Study slow_links(const Laboratory& laboratory);
 Study long_links(const Laboratory& laboratory);
 Study levels_of_long_links(const Laboratory& laboratory);
 Study stalls(const Laboratory& laboratory);
+// warps.cpp
+Study warped_turns(const Laboratory& laboratory);
+Study warped_looks(const Laboratory& laboratory);
+Study warped_zooms(const Laboratory& laboratory);
+Study warped_glass(const Laboratory& laboratory);
+Study warped_mirrors(const Laboratory& laboratory);
+Study warped_highlights(const Laboratory& laboratory);
+Study warped_bars(const Laboratory& laboratory);
+Study warped_edges(const Laboratory& laboratory);
+Study warped_parts(const Laboratory& laboratory);
 // levels.cpp
 Study noisy_times(const Laboratory& laboratory);
 Study loads_at_a_border(const Laboratory& laboratory);

@@ -41,6 +41,15 @@ TEST_CASE("a plane keeps its distances, within half a step") {
         }
 }
 
+TEST_CASE("however steep a plane is, no edge goes through it") {
+    for (const double slope : {0.001, 0.005, 0.02, 0.05}) {
+        CAPTURE(slope);
+        const auto plane = [&](int x, int y) { return 0.01 + slope * (x + 0.5 * y); };
+        const DepthMap map = depth_map_of(depth_of(32, 24, plane), 32, 24, kNear, depth_map_size(32, 24, 4));
+        CHECK(map.near == map.far);
+    }
+}
+
 TEST_CASE("an edge divides a block by what lies nearer") {
     // Nearer in the lower left half of the block.
     const auto edge = [](int x, int y) { return y >= x ? 1.0 : 0.25; };

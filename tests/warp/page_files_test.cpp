@@ -225,8 +225,12 @@ TEST_CASE("the page's depth maps are what is encoded, with these layers") {
         const Layers layers = layers_of(map);
         ordered_json file = json_of(map);
         file.update({{"near", map.near}, {"far", map.far}, {"mask", map.mask}});
-        file["layers"] = {
-            {"near", layers.near}, {"far", layers.far}, {"mask", layers.mask}, {"farthest", layers.farthest}};
+        file["layers"] = {{"near", layers.near},
+                          {"far", layers.far},
+                          {"mask", layers.mask},
+                          {"farthest", layers.farthest},
+                          {"nearSlope", layers.near_slope},
+                          {"farSlope", layers.far_slope}};
         if (renews()) write("depth-maps/" + name + ".json", file);
         const ordered_json expected = read("depth-maps/" + name + ".json");
         // Another zlib writes other bytes.

@@ -175,3 +175,16 @@ TEST_CASE("what is hidden shows what is beside it, and no depth leaves the image
     CHECK(blues(image) == doctest::Approx(blues(from.image)).epsilon(0.03));
     CHECK(warped(from.image, {}, camera, right, Background::turns).rgba == from.image.rgba);
 }
+
+TEST_CASE("a steep plane has no steps, whose triangles would be none of its surface") {
+    const int columns = 12, rows = 9;
+    DepthMap map{columns, rows, 1, {}, {}, {}};
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            map.far.push_back(static_cast<std::uint8_t>(1 + 12 * column + 13 * row));
+    map.near = map.far;
+    map.mask.assign(map.far.size(), 0xffff);
+    const Layers layers = layers_of(map);
+    CHECK(layers.near == map.near);
+    CHECK(layers.far == map.far);
+}

@@ -8,11 +8,15 @@
  *   the block. Bit BITS · row + column of its `mask`, from its top left, is set where that part of it shows what is
  *   nearer.
  *
- * @typedef {{near: Uint8Array, far: Uint8Array, mask: Uint16Array, farthest: Uint32Array}} Layers
+ * @typedef {{
+ *   near: Uint8Array, far: Uint8Array, mask: Uint16Array, farthest: Uint32Array, nearSlope: Uint8Array,
+ *   farSlope: Uint8Array,
+ * }} Layers
  *   The blocks as the two layers of the grid have them: where an edge goes through a block or beside it, the one has
  *   what is nearer, and the other what is farther. There a part of a block belongs to the first layer if its bit in
- *   `mask` is set; elsewhere both layers are the same, and blocks belong to both. `farthest` is the block beside it, or
- *   itself, that shows what is farthest.
+ *   `mask` is set; elsewhere both layers are the same, and blocks belong to both. `farthest` is the one of those up to
+ *   two blocks beside it, or itself, that shows what is farthest. A slope is by how much the layer rises from a block to
+ *   the next beside and below it, together: on the side where that is less.
  */
 
 /** The nearest surface of a frame; 0: infinitely far. */
@@ -21,14 +25,14 @@ export const STEPS = 255;
 export const BITS = 4;
 
 const MOST_BLOCKS = 320;
-/** A triangle of the grid that spans more steps is no surface, and neither is one that reaches infinity. */
+/** A triangle of the grid that spans more steps, beside twice its slope, is no surface, nor one that reaches infinity. */
 const GAP = 16;
 /** An inflater keeps all that it makes of a piece: of a small one not much. */
 const PIECE_BYTES = 1024;
 
 /** @returns {boolean} whether no surface goes from one reciprocal distance to the other, in steps */
-export function isStep(low, high) {
-  return high - low > GAP || (low === 0 && high > 0);
+export function isStep(low, high, slope = 0) {
+  return high - low > GAP + 2 * slope || (low === 0 && high > 0);
 }
 
 /**
@@ -129,16 +133,24 @@ const REACH = 2;
  */
 export function layersOf({ columns, rows, near, far, mask }) {
   const blocks = columns * rows;
-  const layers = { near: near.slice(), far: far.slice(), mask: mask.slice(), farthest: new Uint32Array(blocks) };
-  const nearest = new Uint8Array(blocks);
-  const lowest = new Uint8Array(blocks);
+  const layers = {
+    near: near.slice(),
+    far: far.slice(),
+    mask: mask.slice(),
+    farthest: new Uint32Array(blocks),
+    nearSlope: slopesOf(near, columns, rows),
+    farSlope: slopesOf(far, columns, rows),
+  };
+  const { nearSlope, farSlope } = layers;
+  const nearest = new Uint32Array(blocks);
+  const lowest = new Uint32Array(blocks);
   const farthest = new Uint32Array(blocks);
   for (let row = 0, i = 0; row < rows; row += 1) {
     for (let column = 0; column < columns; column += 1, i += 1) {
       const left = column > 0 ? i - 1 : i;
       const right = column < columns - 1 ? i + 1 : i;
-      nearest[i] = Math.max(near[left], near[i], near[right]);
-      lowest[i] = Math.min(far[left], far[i], far[right]);
+      nearest[i] = higher(near, higher(near, left, i), right);
+      lowest[i] = lower(far, lower(far, left, i), right);
       farthest[i] = i - Math.min(column, REACH);
       for (let k = farthest[i] + 1; k <= i + Math.min(columns - 1 - column, REACH); k += 1) {
         farthest[i] = farther(near, far, farthest[i], k);
@@ -155,17 +167,39 @@ export function layersOf({ columns, rows, near, far, mask }) {
       }
       layers.farthest[i] = farther(near, far, i, beside);
       if (near[i] !== far[i]) continue;
-      const high = Math.max(nearest[i - above], nearest[i], nearest[i + below]);
-      const low = Math.min(lowest[i - above], lowest[i], lowest[i + below]);
-      if (isStep(near[i], high)) {
-        layers.near[i] = high;
+      const high = higher(near, i, higher(near, higher(near, nearest[i - above], nearest[i]), nearest[i + below]));
+      const low = lower(far, i, lower(far, lower(far, lowest[i - above], lowest[i]), lowest[i + below]));
+      if (isStep(near[i], near[high], Math.min(nearSlope[i], nearSlope[high]))) {
+        layers.near[i] = near[high];
         layers.mask[i] = 0; // it belongs to the other layer
-      } else if (isStep(low, far[i])) {
-        layers.far[i] = low;
+      } else if (isStep(far[low], far[i], Math.min(farSlope[i], farSlope[low]))) {
+        layers.far[i] = far[low];
       }
     }
   }
   return layers;
+}
+
+/** Of two blocks; the first where they are the same. */
+const higher = (steps, a, b) => (steps[b] > steps[a] ? b : a);
+const lower = (steps, a, b) => (steps[b] < steps[a] ? b : a);
+
+/** Reciprocal distances are linear in the frame where a surface is a plane: it rises on both sides alike. */
+function slopesOf(steps, columns, rows) {
+  const slopes = new Uint8Array(steps.length);
+  const step = columns > 1 ? 1 : 0;
+  const line = rows > 1 ? columns : 0;
+  for (let row = 0, i = 0; row < rows; row += 1) {
+    for (let column = 0; column < columns; column += 1, i += 1) {
+      // At a side of the frame the other one counts.
+      const left = Math.abs(steps[i] - steps[column > 0 ? i - step : i + step]);
+      const right = Math.abs(steps[i] - steps[column + 1 < columns ? i + step : i - step]);
+      const above = Math.abs(steps[i] - steps[row > 0 ? i - line : i + line]);
+      const below = Math.abs(steps[i] - steps[row + 1 < rows ? i + line : i - line]);
+      slopes[i] = Math.min(Math.min(left, right) + Math.min(above, below), STEPS);
+    }
+  }
+  return slopes;
 }
 
 /** Of two blocks; the first where they are as far. */

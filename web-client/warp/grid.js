@@ -52,14 +52,14 @@ export function buildTriangles({ columns, rows, far }, layers, triangles) {
       const d = lower + right;
       const corner = row * width + column;
       if (hasTwo(layers, a) || hasTwo(layers, b) || hasTwo(layers, c) || hasTwo(layers, d)) {
-        addSurface(triangles.near, layers.near, corner, width, a, b, c, d);
-        addSurface(triangles.far, layers.far, corner, width, a, b, c, d);
+        addSurface(triangles.near, layers.near, layers.nearSlope, corner, width, a, b, c, d);
+        addSurface(triangles.far, layers.far, layers.farSlope, corner, width, a, b, c, d);
       } else {
-        addSurface(triangles.smooth, layers.near, corner, width, a, b, c, d);
+        addSurface(triangles.smooth, layers.near, layers.nearSlope, corner, width, a, b, c, d);
       }
       if (!isStep(Math.min(far[a], far[b], far[c], far[d]), Math.max(far[a], far[b], far[c], far[d]))) continue;
-      addHidden(triangles.hidden, corner, corner + 1, corner + width, far[a], far[b], far[c]);
-      addHidden(triangles.hidden, corner + width, corner + 1, corner + width + 1, far[c], far[b], far[d]);
+      addHidden(triangles.hidden, far, layers.farSlope, [corner, corner + 1, corner + width], [a, b, c]);
+      addHidden(triangles.hidden, far, layers.farSlope, [corner + width, corner + 1, corner + width + 1], [c, b, d]);
     }
   }
 }
@@ -68,20 +68,24 @@ function hasTwo({ near, far }, block) {
   return near[block] !== far[block];
 }
 
-function addSurface(list, steps, corner, width, a, b, c, d) {
+function addSurface(list, steps, slopes, corner, width, a, b, c, d) {
   const low = Math.min(steps[b], steps[c]);
   const high = Math.max(steps[b], steps[c]);
+  const slope = Math.min(slopes[b], slopes[c]);
   const below = corner + width;
-  if (!isStep(Math.min(steps[a], low), Math.max(steps[a], high))) list.add(corner, corner + 1, below);
-  if (!isStep(Math.min(steps[d], low), Math.max(steps[d], high))) list.add(below, corner + 1, below + 1);
+  const isUpper = !isStep(Math.min(steps[a], low), Math.max(steps[a], high), Math.min(slopes[a], slope));
+  if (isUpper) list.add(corner, corner + 1, below);
+  const isLower = !isStep(Math.min(steps[d], low), Math.max(steps[d], high), Math.min(slopes[d], slope));
+  if (isLower) list.add(below, corner + 1, below + 1);
 }
 
-function addHidden(list, a, b, c, first, second, third) {
-  const least = Math.min(first, second, third);
-  if (!isStep(least, Math.max(first, second, third))) return;
-  if (first === least) list.add(b, c, a);
-  else if (second === least) list.add(c, a, b);
-  else list.add(a, b, c);
+/** Of three corners, with their blocks. */
+function addHidden(list, far, slopes, [first, second, third], [a, b, c]) {
+  const least = Math.min(far[a], far[b], far[c]);
+  if (!isStep(least, Math.max(far[a], far[b], far[c]), Math.min(slopes[a], slopes[b], slopes[c]))) return;
+  if (far[a] === least) list.add(second, third, first);
+  else if (far[b] === least) list.add(third, first, second);
+  else list.add(first, second, third);
 }
 
 /**

@@ -5,6 +5,15 @@
 
 namespace vrut::gl {
 
+namespace {
+
+/// Of what is seen through it, more is seen than of itself.
+bool is_clear(const scene::Material& material, const plan::DrawItem& item) {
+    return item.texture == scene::kNone && material.diffuse.a < 0.5;
+}
+
+}  // namespace
+
 void DepthPass::draw(const plan::DrawLists& lists, const Framebuffer& target, GpuScene& scene,
                      const glm::dmat4& clip_from_view) {
     target.bind();
@@ -15,6 +24,7 @@ void DepthPass::draw(const plan::DrawLists& lists, const Framebuffer& target, Gp
     plan::FrameStats not_counted;
     for (const plan::TransparentGroup& group : lists.transparent)
         for (const plan::DrawItem& item : group.items) {
+            if (is_clear(scene.scene()->material(item.material), item)) continue;
             const GpuGeometry& geometry = scene.geometry(item);
             program.use(item, geometry);
             apply(state.for_item(item));

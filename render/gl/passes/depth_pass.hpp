@@ -9,7 +9,7 @@
 
 namespace vrut::gl {
 
-/// Adds transparent items to the depth of a target in which opaque ones are drawn.
+/// Adds transparent items to the depth of a target in which opaque ones are drawn, but for clear ones.
 class DepthPass {
 public:
     explicit DepthPass(Programs& programs) : programs_(programs) {}

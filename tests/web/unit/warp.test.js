@@ -155,8 +155,10 @@ describe('the grid', () => {
     const stepsOf = (steps) => (triangle) => triangle.map((corner) => steps[blockOf(corner)]);
     for (const [list, layer] of [['smooth', 'near'], ['near', 'near'], ['far', 'far']]) {
       assert.ok(triangles[list].length > 0, list);
-      for (const steps of trianglesOf(triangles[list]).map(stepsOf(layers[layer]))) {
-        assert.ok(!isStep(Math.min(...steps), Math.max(...steps)), `${list}: ${steps}`);
+      for (const triangle of trianglesOf(triangles[list])) {
+        const steps = stepsOf(layers[layer])(triangle);
+        const slope = Math.min(...stepsOf(layers[`${layer}Slope`])(triangle));
+        assert.ok(!isStep(Math.min(...steps), Math.max(...steps), slope), `${list}: ${steps}`);
       }
     }
     for (const triangle of trianglesOf(triangles.smooth)) {
