@@ -258,7 +258,8 @@ void Engine::finish_frame() {
         frame.picture.applied = applied();
     }
     warp::DepthMap depth = std::exchange(frame.job.depth, {});
-    if (depth.columns > 0) frame.picture.depth_frame = header.frame;
+    const bool is_new = depth.columns > 0 || frame.picture.depth_frame == 0;
+    if (frame.job.depth_size.columns > 0 && is_new) frame.picture.depth_frame = header.frame;
     before_newest_ = newest_;
     newest_ = {header.frame, frame.visible, frame.view_size, frame.refinement, frame.picture.depth_frame};
     drawn_.push_back(header.frame);

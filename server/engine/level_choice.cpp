@@ -25,10 +25,9 @@ double for_pixels(double cost, const protocol::Level& level, double pixels) {
 }  // namespace
 
 double warped_target(double target_ms, const std::optional<Link>& link) {
-    constexpr double kPatience = 1.5;  // round trips
     if (!link) return target_ms;
-    return std::max(target_ms,
-                    kPatience * std::chrono::duration<double, std::milli>(link->round_trip).count());
+    // Less is better in fast turns, more in slow ones.
+    return std::max(target_ms, std::chrono::duration<double, std::milli>(link->round_trip).count());
 }
 
 double preferred_target(double target_ms, double preference) {
