@@ -232,3 +232,10 @@ TEST_CASE("where no link is known, the server's part counts alone") {
     CHECK(PictureCost{12, 80}.ms_over(Link{1000, {}}) == 92);
     CHECK(PictureCost{12, 80}.ms_over(Link{std::numeric_limits<double>::infinity(), {}}) == 12);
 }
+
+TEST_CASE("who warps frames waits for them no longer than the link takes anyway") {
+    using std::chrono::milliseconds;
+    CHECK(warped_target(50, {}) == 50);
+    CHECK(warped_target(50, Link{1e6, milliseconds(20)}) == 50);
+    CHECK(warped_target(50, Link{1e6, milliseconds(200)}) == 200);
+}
