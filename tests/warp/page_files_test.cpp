@@ -220,8 +220,9 @@ void check_image(const std::string& name, const scene::Image& image) {
 }  // namespace
 
 TEST_CASE("the page's depth maps are what is encoded, with these layers") {
-    for (const auto& [name, map] : maps()) {
-        CAPTURE(name);
+    for (const auto& named : maps()) {
+        const auto& [name, map] = named;
+        CAPTURE(named.first);
         const Layers layers = layers_of(map);
         ordered_json file = json_of(map);
         file.update({{"near", map.near}, {"far", map.far}, {"mask", map.mask}});
