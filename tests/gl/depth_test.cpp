@@ -1,4 +1,5 @@
-// The depth that comes with an image: what is in front, glass too, and no other byte of the image changes.
+// The depth that comes with an image: what is in front, glass too unless it is clear, and no other byte of
+// the image changes.
 #include <algorithm>
 
 #include "renderer_fixture.hpp"
@@ -29,7 +30,7 @@ TEST_CASE("depth of walls, of glass and of the background") {
     RendererFixture studio;
     plan::View view = pixel_view(kSide, kSide);
     scene::Material glass = material_of({0.2, 0.4, 0.6});
-    glass.diffuse.a = 0.3;
+    glass.diffuse.a = 0.6;
     // Left a wall, in the middle glass before it, right nothing.
     const scene::Geometry left = rectangle(0, 0, 40, kSide, view), middle = rectangle(8, 0, 16, kSide, view);
     const double near = kSide / 4.0, far = kSide / 2.0;  // distances from the eye
@@ -51,6 +52,19 @@ TEST_CASE("depth of walls, of glass and of the background") {
         CHECK(at(12) == 0);
         CHECK(with.depth.near == with.depth.far);
     }
+}
+
+TEST_CASE("clear glass leaves the depth of what is seen through it") {
+    RendererFixture studio;
+    plan::View view = pixel_view(kSide, kSide);
+    scene::Material glass = material_of({0.2, 0.4, 0.6});
+    glass.diffuse.a = 0.3;
+    const scene::Geometry wall = rectangle(0, 0, kSide, kSide, view),
+                          middle = rectangle(8, 0, 16, kSide, view);
+    view.scene = scene_of(
+        {{1, wall, material_of({0.8, 0.2, 0.2})}, {2, mapped(middle, 0.5, {0, 0, kSide / 4.0}), glass}});
+    const Drawn seen = drawn(studio, view, true);
+    CHECK(std::ranges::min(seen.depth.near) == warp::DepthMap::kSteps);
 }
 
 TEST_CASE("a view without a scene has the background's depth") {

@@ -22,7 +22,7 @@ export function screenOf(canvas, redraw) {
 
 /** A canvas that has WebGL shows nothing else: another one tells. */
 function hasGraphicsCard() {
-  const gl = globalThis.OffscreenCanvas && new OffscreenCanvas(1, 1).getContext('webgl2');
+  const gl = globalThis.document?.createElement('canvas').getContext('webgl2');
   if (!gl) return false;
   const told = gl.getExtension('WEBGL_debug_renderer_info');
   const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
