@@ -183,8 +183,9 @@ void chart_glass(const ChartArguments& arguments) {
                 const Spread spread = spread_of(errors.errors.at(i));
                 const GlassErrors::Delivered& delivered = errors.delivered.at(i);
                 std::printf("%-24s %-16s %-16s %8.4f %8.4f %9.0f %7d %9.1f %7.1f\n", session.name.c_str(),
-                            link.name.c_str(), kPredictions.at(i), spread.mean, spread.p95, delivered.longest_ms,
-                            delivered.frames, delivered.bytes / std::max(1, delivered.frames) / 1000,
+                            link.name.c_str(), kPredictions.at(i), spread.mean, spread.p95,
+                            delivered.longest_ms, delivered.frames,
+                            delivered.bytes / std::max(1, delivered.frames) / 1000,
                             100 * delivered.depth_bytes / std::max(1.0, delivered.bytes));
                 csv += measure::line_of({session.name, link.name, kPredictions.at(i), text_of(spread.mean, 6),
                                          text_of(spread.p95, 6), text_of(delivered.longest_ms, 1),
