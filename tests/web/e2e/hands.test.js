@@ -306,7 +306,7 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
     foretold('turn', async () => {
       await touch('touchStart', [400, 300]);
       for (let step = 1; step <= 4; step += 1) {
-        await touch('touchMove', [400 + 9 * step, 300 + 2 * step]);
+        await touch('touchMove', [400 + 5 * step, 300 + 2 * step]);
         await nextRefreshes();
       }
       await touch('touchEnd');
