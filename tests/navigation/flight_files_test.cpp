@@ -1,6 +1,5 @@
 // The flights of tests/data/flights, which the page's tests read, too. After a change of one of them, or for
-// a new one (with an empty list of cameras), VRUT_RENEW=1 writes the cameras anew; then the diff is to be
-// looked at.
+// a new one (with an empty list of cameras), VRUT_RENEW=1 writes the cameras again. Look at the diff then.
 #include <doctest/doctest.h>
 
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // The gestures of tests/data/gestures, which the page's tests read, too: its input makes these messages of
 // the browser's events, its prediction moves the picture as these cameras do, and its navigation computes
 // these cameras. After a change of one of them, or for a new one (with an empty list of cameras),
-// VRUT_RENEW=1 writes the cameras anew; then the diff is to be looked at.
+// VRUT_RENEW=1 writes the cameras again. Look at the diff then.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -1,6 +1,6 @@
 // What tests/data/warp holds for the tests of the page, which decodes depth maps and warps by them, too: maps
 // with their layers, matrices, and a frame with what other cameras see of it. After a change VRUT_RENEW=1
-// writes them anew; then the diff is to be looked at.
+// writes them again. Look at the diff then.
 #include <doctest/doctest.h>
 
 #include <cmath>

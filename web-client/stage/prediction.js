@@ -84,7 +84,7 @@ export class Prediction {
     if (!this.#shown || !this.#steers) return;
     if (message.type === 'fly') this.#fly(message);
     else if (isInput(message)) this.#push(message);
-    // What moves the camera otherwise, drags begin anew at.
+    // Other moves of the camera, from where drags start again.
     else if (message.type === 'fit' || message.patch?.camera) this.#push({ id: message.id });
   }
 

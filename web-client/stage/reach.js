@@ -1,4 +1,4 @@
-import { focusDistance, isSamePose, rightDirection, viewDirection } from '../navigation/camera.js';
+import { focusDistance, rightDirection, tangentHeight, viewDirection } from '../navigation/camera.js';
 import { CameraPath } from '../navigation/flight.js';
 import { cross, distance, dot, scale, subtract } from '../navigation/vectors.js';
 
@@ -30,7 +30,7 @@ export function similarity(from, to, view) {
   const depth = focusDistance(from);
   const left = depth - dot(way, forward);
   if (left <= 0) return null;
-  const pixels = view.height / (2 * Math.tan((from.fov * Math.PI) / 360) * left);
+  const pixels = view.height / (tangentHeight(from) * left);
   return { scale: depth / left, x: -dot(way, right) * pixels, y: dot(way, cross(right, forward)) * pixels };
 }
 
@@ -53,7 +53,7 @@ export function withinReach(from, to) {
     if (angleBetween(from, path.at(middle)) < reached) low = middle;
     else high = middle;
   }
-  return isSamePose(from, to) ? to : path.at(low);
+  return path.at(low);
 }
 
 /** Between the directions of view or of what is up, or by which the eye has moved aside, seen from the focus; radians. */

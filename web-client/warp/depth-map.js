@@ -3,9 +3,9 @@
  *   of the nearest surface along the view, in 1/scene unit
  *
  * @typedef {DepthMapSize & {near: Uint8Array, far: Uint8Array, mask: Uint16Array}} DepthMap
- *   How far away the surfaces of a frame are, in blocks of its pixels, rows from the top down: the reciprocal
- *   distances, of which STEPS are `scale`, of what is nearer and of what is farther, equal where no edge goes through
- *   the block. Bit BITS · row + column of its `mask`, from its top left, is set where that part of it shows what is
+ *   How far away the surfaces of a frame are, in blocks of its pixels, rows from the top down. A reciprocal distance of
+ *   STEPS is that of `scale`. Where an edge goes through a block, `near` is that of the nearer side, and `far` that of
+ *   the farther one; elsewhere they are equal. Bit BITS · row + column of its `mask`, from its top left, is set where that part of it shows what is
  *   nearer.
  *
  * @typedef {{
@@ -24,7 +24,7 @@ export const STEPS = 255;
 /** Of a block's mask, in each direction. */
 export const BITS = 4;
 
-const MOST_BLOCKS = 320;
+const MOST_BLOCKS = 160;
 /** A triangle of the grid that spans more steps, beside twice its slope, is no surface, nor one that reaches infinity. */
 const GAP = 16;
 /** An inflater keeps all that it makes of a piece: of a small one not much. */

@@ -1,7 +1,7 @@
 /** @import { DepthMap, Layers } from './depth-map.js' */
 import { BITS, isStep } from './depth-map.js';
 
-/** Places in a block are told in as many parts of its side: those of its middle, and of the middles of its parts. */
+/** A place in a block is a whole number of these parts of its side: the block's middle, or the middle of a part. */
 export const PLACES = 2 * BITS;
 /** Of a number of 32 bits. */
 export const PLACE_BITS = 12;

@@ -1,11 +1,11 @@
 /**
+ * @import { Camera } from '../navigation/camera.js'
  * @import { DepthMap } from './depth-map.js'
- * @import { FrameHeader } from '../base/protocol.js'
  */
+import { rightDirection, tangentHeight, viewDirection } from '../navigation/camera.js';
+import { cross, dot, scale, subtract } from '../navigation/vectors.js';
 import { BITS, STEPS, layersOf } from './depth-map.js';
 import { PLACES, PLACE_BITS, Triangles, buildTriangles, packBlocks } from './grid.js';
-
-/** @typedef {Pick<FrameHeader['camera'], 'eye'|'focus'|'up'|'fov'>} Pose */
 
 /** Where programs find the frame and its blocks. */
 const FRAME_UNIT = 0;
@@ -17,17 +17,17 @@ const UNIFORMS = ['size', 'matrix', 'backgroundTurns', 'isNear'];
  * same of another camera: of the product m, (m.x, m.y, m.w) / m.z. Nothing in it is as large as the distance of the
  * scene from the origin.
  *
- * @param {Pose} from
- * @param {Pose} to
+ * @param {Camera} from
+ * @param {Camera} to
  * @param {number} aspect width / height
  * @returns {Float64Array} column by column
  */
 export function warpMatrix(from, to, aspect) {
   const [before, after] = [axesOf(from), axesOf(to)];
   // A point of the view is (x, y, -1, d), and so are those of the world with w = d.
-  const columns = [...before, from.eye.map((x, i) => x - to.eye[i])];
-  const topBefore = Math.tan((from.fov * Math.PI) / 360);
-  const topAfter = Math.tan((to.fov * Math.PI) / 360);
+  const columns = [...before, subtract(from.eye, to.eye)];
+  const topBefore = tangentHeight(from) / 2;
+  const topAfter = tangentHeight(to) / 2;
   const viewFromImage = [topBefore * aspect, topBefore, -1, 1];
   const imageFromView = [1 / (topAfter * aspect), 1 / topAfter, -1];
   const matrix = new Float64Array(16);
@@ -40,24 +40,11 @@ export function warpMatrix(from, to, aspect) {
   return matrix;
 }
 
-/** To the right, up, and back along the view. */
-function axesOf({ eye, focus, up }) {
-  const back = unit(eye.map((x, i) => x - focus[i]));
-  const right = unit(cross(up, back));
+/** To the right, up, and back along the view. @param {Camera} camera */
+function axesOf(camera) {
+  const right = rightDirection(camera);
+  const back = scale(viewDirection(camera), -1);
   return [right, cross(back, right), back];
-}
-
-function dot(a, b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-function cross(a, b) {
-  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-}
-
-function unit(a) {
-  const length = Math.hypot(...a);
-  return a.map((x) => x / length);
 }
 
 const PRECISION = `#version 300 es
@@ -86,12 +73,12 @@ void main() {
 
 /**
  * A corner of the grid: where it lies in the frame, and where the warp takes it. Depth is linear in the reciprocal
- * distance, of which only what is NEAREST times as near as the frame's nearest surface is clipped; what is infinitely
- * far lies before what the buffer is cleared to.
+ * distance. A surface is clipped only where it comes NEAREST times as near as the frame's nearest one. What is
+ * infinitely far lies before what the buffer is cleared to.
  */
 const CORNER = `${PRECISION}
 uniform usampler2D blocks;
-uniform mat4 matrix;  // for reciprocal distances of which 1 is that of the frame's nearest surface
+uniform mat4 matrix;  // reciprocal distances are in parts of that of the frame's nearest surface
 uniform bool backgroundTurns;
 
 const float BESIDE = 2.0;  // how far the grid goes on beside the frame, in parts of that
@@ -196,8 +183,8 @@ void main() {
 }`;
 
 /**
- * Draws the last frame as another camera sees it: a grid of the blocks' centres, of which no triangle spans a step of
- * depth (Mark, McMillan and Bishop, "Post-Rendering 3D Warping", 1997), as `warp::warped` of the server does
+ * Draws the last frame as another camera sees it: as a grid of the blocks' centres without the triangles that span a
+ * step of depth (Mark, McMillan and Bishop, "Post-Rendering 3D Warping", 1997), as `warp::warped` of the server does
  * (render/warp/warp.hpp). What a surface hid and now does not is taken to look like what is seen beside it, what is
  * beside the frame like its side, and where nothing is the frame stays.
  *

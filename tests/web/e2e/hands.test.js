@@ -219,7 +219,7 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
     await server?.stop();
   });
 
-  /** Runs in the page: counts refreshes, and at which of them input came and the picture was drawn anew. */
+  /** Runs in the page: counts refreshes, and keeps at which of them input came, and at which the picture was drawn. */
   function countRefreshes() {
     globalThis.refreshes = { now: 0, input: [], drawn: [] };
     const count = () => {
@@ -339,8 +339,13 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
     await settled();
     const before = await pixels();
     link.hold();
+    await tablet.page.evaluate(() => Object.assign(globalThis.refreshes, { drawn: [] }));
     await tablet.page.locator('#bar button').first().tap();
-    await tablet.page.waitForTimeout(800);
+    // It draws at each refresh until it is at its end.
+    await tablet.page.waitForFunction(() => {
+      const { now, drawn } = globalThis.refreshes;
+      return drawn.length > 0 && now > drawn.at(-1) + 15;
+    });
     const late = await pixels();
     link.release();
     await settled();

@@ -9,7 +9,7 @@ const MAY_IMPORT = {
   base: [],
   connection: ['base'],
   navigation: ['base'],
-  warp: ['base'],
+  warp: ['base', 'navigation'],
   stage: ['base', 'connection', 'navigation', 'warp'],
   panels: ['base', 'connection'],
   '.': ['base', 'connection', 'navigation', 'warp', 'stage', 'panels'],
