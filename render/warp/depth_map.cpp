@@ -97,7 +97,7 @@ std::size_t size_of(int columns, int rows) {
 /// An image's depth at the middle of each part of its blocks, in steps, rows from the top down.
 struct Samples {
     Samples(std::span<const float> depth, int width, int height, const DepthMapSize& size)
-        : columns(static_cast<std::size_t>(DepthMap::kBits * size.columns)) {
+        : columns(static_cast<std::size_t>(DepthMap::kBits) * static_cast<std::size_t>(size.columns)) {
         const auto pixels = [](std::size_t parts, int side) {
             std::vector<std::size_t> at(parts);
             for (std::size_t i = 0; i < parts; ++i)
@@ -106,7 +106,7 @@ struct Samples {
         };
         const std::vector<std::size_t> across = pixels(columns, width);
         const std::vector<std::size_t> down =
-            pixels(static_cast<std::size_t>(DepthMap::kBits * size.rows), height);
+            pixels(static_cast<std::size_t>(DepthMap::kBits) * static_cast<std::size_t>(size.rows), height);
         std::vector<float> values(columns * down.size());
         float* value = values.data();
         for (const std::size_t y : down) {
@@ -181,11 +181,12 @@ DepthMap depth_map_of(std::span<const float> depth, int width, int height, doubl
             map.near[block] = map.far[block] = static_cast<std::uint8_t>((all + kParts / 2) / kParts);
             if (highest - lowest < kEdge) continue;
             Parts parts;
-            for (std::size_t i = 0; i < DepthMap::kBits; ++i) {
+            constexpr std::size_t kSide = DepthMap::kBits;
+            for (std::size_t i = 0; i < kSide; ++i) {
                 parts[i] = a[x + i];
-                parts[DepthMap::kBits + i] = b[x + i];
-                parts[2 * DepthMap::kBits + i] = c[x + i];
-                parts[3 * DepthMap::kBits + i] = d[x + i];
+                parts[kSide + i] = b[x + i];
+                parts[2 * kSide + i] = c[x + i];
+                parts[3 * kSide + i] = d[x + i];
             }
             const std::optional<Divided> divided = divided_of(parts, lowest, highest);
             if (!divided) continue;
