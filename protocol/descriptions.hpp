@@ -733,6 +733,15 @@ struct SizeAlone : Object<Resize> {
 };
 
 template <class V>
+void describe(V& v, const FrameHeader::Pose*) {
+    v.required("eye", &FrameHeader::Pose::eye, kPosition, "Where the camera stands.");
+    v.required("focus", &FrameHeader::Pose::focus, kPosition, "What it looks at.");
+    v.required("up", &FrameHeader::Pose::up, kPosition, "Which way is up in the image.");
+    v.required("center", &FrameHeader::Pose::center, kPosition, "The centre of rotation.");
+    v.required("fov", &FrameHeader::Pose::fov, kFov, "The vertical angle of view in degrees.");
+}
+
+template <class V>
 void describe(V& v, const FrameHeader::Depth*) {
     v.required("frame", &FrameHeader::Depth::frame, kId, "The frame that the map was made for.");
     v.required("columns", &FrameHeader::Depth::columns, Integer{1, kMostDepthBlocks}, "Blocks in a row.");
@@ -741,6 +750,8 @@ void describe(V& v, const FrameHeader::Depth*) {
                "Reciprocal distance of the nearest surface along the view.");
     v.required("backgroundTurns", &FrameHeader::Depth::background_turns, Flag{},
                "What is infinitely far turns with the camera; else it stays where it is in the image.");
+    v.required("camera", &FrameHeader::Depth::camera, Object<FrameHeader::Pose>{},
+               "Where image and map were drawn from; missing: from the header's `camera`.");
     v.required("bytes", &FrameHeader::Depth::bytes, kId,
                "Of the map behind this file; 0: this client has it already.");
 }

@@ -34,21 +34,17 @@ EncodedFrameHeader::EncodedFrameHeader(const FrameHeader& header)
     : EncodedFrameHeader(without_clients_part(header)) {}
 
 EncodedFrameHeader::EncodedFrameHeader(const std::string& text) {
-    // Quotes within a name are escaped, so that the member stands nowhere else.
-    const std::string depth = ",\"depth\":{", bytes = "\"bytes\":";
-    std::string none = text, known = text;
-    if (const std::size_t at = text.find(depth); at != std::string::npos) {
-        const std::size_t end = text.find('}', at), number = text.find(bytes, at) + bytes.size();
-        if (end == std::string::npos || number > end)
-            throw std::runtime_error("a frame's header has no whole 'depth'");
-        known.replace(number, text.find_first_of(",}", number) - number, "0");
-        none.erase(at, end + 1 - at);
-    }
-    parts_ = {parts_of(none), parts_of(known), parts_of(text)};
+    Json header = Json::parse(text, nullptr, false);
+    if (!header.is_object()) throw std::runtime_error("a frame's header is no object");
+    const Parts sent = parts_of(text);
+    if (const auto depth = header.find("depth"); depth != header.end()) (*depth)["bytes"] = 0;
+    const Parts known = parts_of(dump(header));
+    header.erase("depth");
+    parts_ = {parts_of(dump(header)), known, sent};
 }
 
 EncodedFrameHeader::Parts EncodedFrameHeader::parts_of(const std::string& text) {
-    // As `depth`.
+    // Quotes within a name are escaped, so that the member stands nowhere else.
     const std::string handled = "\"handled\":", since_input = ",\"sinceInputMs\":0.0";
     const std::size_t at = text.find(handled + "0,"),
                       second = text.find(since_input, std::min(at, text.size()));

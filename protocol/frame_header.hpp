@@ -30,12 +30,17 @@ struct FrameHeader {
         double render_ms = 0, readback_ms = 0, encode_ms = 0;
         std::optional<double> since_input_ms;
     };
+    struct Pose {
+        glm::dvec3 eye{0}, focus{0}, up{0}, center{0};
+        double fov = 40;
+    };
     /// Of a map of depth (warp::DepthMap).
     struct Depth {
         std::int64_t frame = 0;  ///< for which it was made
         int columns = 0, rows = 0;
         double scale = 0;
         bool background_turns = false;  ///< with the camera
+        std::optional<Pose> camera;     ///< that it and the image were drawn from; none: the header's
         std::int64_t bytes = 0;         ///< behind the file
     };
     std::int64_t frame = 0, revision = 0, handled = 0;

@@ -62,7 +62,7 @@ struct EdgeWanted {
     std::int64_t newer_than = 0;
     int count = 0;
     std::uint64_t since_sequence = 0;
-    bool depth = false;
+    bool depth = false, only_warped = false;
     std::optional<double> bytes_per_second, round_trip_ms;  ///< of its link; none: not measured
 };
 struct EdgeSnapshotSent {

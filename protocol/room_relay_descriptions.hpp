@@ -58,6 +58,7 @@ void describe(V& v, const EdgeWanted*) {
     v.required("since", &EdgeWanted::since_sequence, kCount,
                "They show what its messages up to this one did.");
     v.optional("depth", &EdgeWanted::depth, Flag{}, "With depth.");
+    v.optional("onlyWarped", &EdgeWanted::only_warped, Flag{}, "Whoever gets them warps them.");
     v.optional("bytesPerSecond", &EdgeWanted::bytes_per_second, Number{1e-3, kFastestLink}, "Of its link.");
     v.optional("roundTripMs", &EdgeWanted::round_trip_ms, Number{0, 1e9}, "Of its link.");
 }

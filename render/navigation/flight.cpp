@@ -30,7 +30,9 @@ double elevation(const scene::Camera& camera) {
 
 ViewBasis between_level(const scene::Camera& a, const scene::Camera& b, double part) {
     const double from = azimuth(a), turn = std::remainder(azimuth(b) - from, 2 * std::numbers::pi);
-    const double around = from + turn * part, above = std::lerp(elevation(a), elevation(b), part);
+    constexpr double kUpright = std::numbers::pi / 2;
+    const double around = from + turn * part,
+                 above = std::clamp(std::lerp(elevation(a), elevation(b), part), -kUpright, kUpright);
     const glm::dvec3 ahead(-std::sin(around), 0, -std::cos(around));
     const double c = std::cos(above), s = std::sin(above);
     return {ahead * c - scene::kVertical * s, ahead * s + scene::kVertical * c};
@@ -46,9 +48,11 @@ ViewBasis between_any(const scene::Camera& a, const scene::Camera& b, double par
     return {turned * glm::dvec3(0, 0, -1), turned * glm::dvec3(0, 1, 0)};
 }
 
-scene::Camera between(const scene::Camera& a, const scene::Camera& b, double part) {
+}  // namespace
+
+scene::Camera on_the_way(const scene::Camera& a, const scene::Camera& b, double part) {
     if (part <= 0 || a == b) return a;
-    if (part >= 1) return b;
+    if (part == 1) return b;
     const ViewBasis basis = is_level(a) && is_level(b) ? between_level(a, b, part) : between_any(a, b, part);
     const double distance =
         scene::focus_distance(a) * std::pow(scene::focus_distance(b) / scene::focus_distance(a), part);
@@ -63,8 +67,6 @@ scene::Camera between(const scene::Camera& a, const scene::Camera& b, double par
     return scene::with_orthogonal_up(result);
 }
 
-}  // namespace
-
 CameraPath::CameraPath(const scene::Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing)
     : path_{{0, from}}, easing_(easing) {
     if (!keyframes.empty() && keyframes.front().at <= 0) path_.clear();
@@ -77,7 +79,7 @@ scene::Camera CameraPath::at(double ms) const {
     if (next == path_.begin()) return path_.front().camera;
     if (next == path_.end() || std::prev(next)->at == ms) return std::prev(next)->camera;
     const auto index = static_cast<std::size_t>(std::prev(next) - path_.begin());
-    return between(path_[index].camera, path_[index + 1].camera, progress(index, ms));
+    return on_the_way(path_[index].camera, path_[index + 1].camera, std::min(progress(index, ms), 1.0));
 }
 
 // The way through the keyframes, counted in keyframes, is a monotone cubic of time: Fritsch and Butland, A

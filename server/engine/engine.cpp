@@ -225,6 +225,7 @@ void Engine::apply() {
         failed_.reset();
     }
     if (!follows_) advance_room();
+    motion_.add(ms_since_start(), room_->visible().camera);
     if (frame_ && is_outdated(*frame_)) give_up_frame();
 }
 

@@ -24,6 +24,7 @@
 #include "engine/scene_lookup.hpp"
 #include "engine/scheduler.hpp"
 #include "mesh/detail_levels.hpp"
+#include "navigation/camera_motion.hpp"
 #include "observe/live_stats.hpp"
 #include "observe/metrics.hpp"
 #include "plan/render_job.hpp"
@@ -162,6 +163,9 @@ private:
     void check_changes();
     void keep_changes();
     void note_kept();
+    double ms_since_start() const {
+        return std::chrono::duration<double, std::milli>(base::Clock::now() - start_).count();
+    }
     room::SessionTime time_of(base::Clock::time_point when) const {
         return std::chrono::duration_cast<room::SessionTime>(when - start_);
     }
@@ -170,6 +174,7 @@ private:
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
     bool wants_depth() const;
+    std::optional<scene::Camera> camera_ahead(std::size_t level, const PictureSize& size) const;
     bool wants_newer(const Client& client) const;
     double refined_bytes() const;
     base::Clock::duration refined_delivery(const std::optional<Link>& link) const;
@@ -275,7 +280,8 @@ private:
         Refinement refinement = Refinement::none;  ///< none: an interactive one
         std::int64_t depth_frame = 0;              ///< Picture::depth_frame
     } newest_, before_newest_;
-    warp::BlockChoice blocks_;        ///< of maps of depth
+    warp::BlockChoice blocks_;         ///< of maps of depth
+    navigation::CameraMotion motion_;  ///< of the camera that is to be seen
     std::deque<std::int64_t> drawn_;  ///< numbers of the last frames
     std::int64_t next_frame_ = 1;
     std::deque<FrameInFlight> in_flight_;  ///< the last interactive ones

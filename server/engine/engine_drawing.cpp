@@ -57,6 +57,19 @@ bool Engine::wants_depth() const {
            std::ranges::any_of(clients_, [](const auto& entry) { return entry.second.wanted.depth; });
 }
 
+/// Where the camera is expected to be when a frame that is begun now is shown to who steers; none where that
+/// is where it is. Whoever does not warp frames would see it turn too far and back again.
+std::optional<scene::Camera> Engine::camera_ahead(std::size_t level, const PictureSize& size) const {
+    const std::optional<Link> link = holders_link();
+    const bool all_warp = std::ranges::all_of(clients_, [](const auto& entry) {
+        const FramesWanted& wanted = entry.second.wanted;
+        return wanted.client.empty() || wanted.only_warped;  // hosts ask for none
+    });
+    if (!link || !all_warp || !wants_depth()) return std::nullopt;
+    const PictureCost cost = choice_->expected(level, pixels_of(size), base::Clock::now());
+    return motion_.ahead(ms_since_start(), cost.delay_ms(*link));
+}
+
 /// Returns true if a client may be sent more frames than there are for it. One from before its last grant
 /// will do for it while that shows what is to be seen.
 bool Engine::wants_newer(const Client& client) const {
@@ -212,6 +225,8 @@ void Engine::begin_frame(Refinement refinement) {
     // A small one that shows something new delays nobody longer than an interactive frame.
     if (still && (shows_present() || refinement != Refinement::small)) picture.idle_since = last_change_;
     picture.applied = applied();
+    if (!still) picture.ahead = camera_ahead(level, size);
+    view.camera = picture.ahead.value_or(view.camera);
     if (!still) {
         picture.header.frame = next_frame_;
         room_->remember(next_frame_++);  // with the camera as it is now
@@ -221,7 +236,7 @@ void Engine::begin_frame(Refinement refinement) {
                                      begin_job(std::move(view), refinement)});
         frame_->job.interactive = !still;
         frame_->job.output = output_of(quality);
-        const bool known = newest_.depth_frame != 0 && shows_present();
+        const bool known = newest_.depth_frame != 0 && !frame_->picture.ahead && shows_present();
         if (known) frame_->picture.depth_frame = newest_.depth_frame;
         if (!known && wants_depth())
             frame_->job.depth_size = warp::depth_map_size(size.width, size.height, blocks_.pixels());
@@ -261,6 +276,7 @@ void Engine::finish_frame() {
     const bool is_new = depth.columns > 0 || frame.picture.depth_frame == 0;
     if (frame.job.depth_size.columns > 0 && is_new) frame.picture.depth_frame = header.frame;
     before_newest_ = newest_;
+    frame.visible.camera = frame.job.view.camera;
     newest_ = {header.frame, frame.visible, frame.view_size, frame.refinement, frame.picture.depth_frame};
     drawn_.push_back(header.frame);
     if (drawn_.size() > kFramesRemembered) drawn_.pop_front();

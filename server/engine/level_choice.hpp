@@ -18,6 +18,10 @@ struct PictureCost {
     double ms_over(const std::optional<Link>& link) const {
         return ms + (link ? 1000 * bytes / link->bytes_per_second : 0);
     }
+    /// From hands that ask for a camera until its picture is shown to them.
+    double delay_ms(const Link& link) const {
+        return ms_over(link) + std::chrono::duration<double, std::milli>(link.round_trip).count();
+    }
 };
 
 /// What an interactive frame must hold.

@@ -56,6 +56,7 @@ struct FramesWanted {
     std::uint64_t since_sequence = 0;  ///< they show what its messages up to this one did
     std::optional<Link> link = {};     ///< none: not measured yet
     bool depth = false;                ///< with depth
+    bool only_warped = false;          ///< whoever gets them draws them from other cameras, by depth
     bool operator==(const FramesWanted&) const = default;
 };
 

@@ -9,6 +9,7 @@
 
 #include "base/clock.hpp"
 #include "frame_header.hpp"
+#include "scene/camera.hpp"
 
 namespace vrut::server::engine {
 
@@ -28,6 +29,7 @@ struct Picture {
     std::string client = {};  ///< of a snapshot: who asked for it
     /// The frame whose depth is this one's, too; 0: none is known.
     std::int64_t depth_frame = 0;
+    std::optional<scene::Camera> ahead = {};  ///< that it is drawn from, with its depth; none: the header's
     bool background_turns = false;  ///< with the camera
 };
 

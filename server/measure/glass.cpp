@@ -12,6 +12,7 @@
 #include "engine/level_choice.hpp"
 #include "engine/scheduler.hpp"
 #include "io/image/image_file.hpp"
+#include "navigation/camera_motion.hpp"
 #include "warp/warp.hpp"
 
 namespace vrut::server::measure {
@@ -33,6 +34,7 @@ Clock::duration duration_of(double ms) {
 /// A frame as it was sent.
 struct Frame {
     ShownFrame what;
+    scene::Camera camera;
     std::vector<std::uint8_t> file;
     std::string depth;
     warp::DepthMapSize depth_size;
@@ -64,13 +66,18 @@ public:
                 engine::JpegEncoder& jpeg)
         : states_(states), has_depth_(has_depth), renderer_(renderer), jpeg_(jpeg) {}
 
-    Frame draw(std::size_t state, const Setting& setting) {
-        plan::RenderJob job(view_with(states_[state], setting));
-        const plan::View& view = states_[state];
+    bool has_depth() const { return has_depth_; }
+
+    /// `camera`: another than the state's.
+    Frame draw(std::size_t state, const Setting& setting, const std::optional<scene::Camera>& camera = {}) {
+        plan::View view = states_[state];
+        view.camera = camera.value_or(view.camera);
+        plan::RenderJob job(view_with(view, setting));
         if (has_depth_) job.depth_size = warp::depth_map_size(view.width, view.height, blocks_.pixels());
         while (!renderer_.step(job)) {
         }
         Frame frame{{state, setting},
+                    view.camera,
                     jpeg_.encode(job.image, setting.jpeg_quality, setting.subsampled),
                     {},
                     job.depth_size,
@@ -149,6 +156,7 @@ private:
         const std::size_t state = known(now);
         if (states_[state] != states_[state_]) last_change_ = now;
         state_ = state;
+        motion_.add(now, states_[state].camera);
         if (drawing_) {
             // A frame of an idle view is given up when that moves.
             const bool is_moving = drawing_->refinement == engine::Refinement::none;
@@ -214,8 +222,10 @@ private:
             quality.samples = engine::samples_of(refinement);
             quality.detail = 0;
         }
-        Frame frame = source_.draw(state, setting_of(quality));
         engine::PictureCost cost = expected(level, quality.scale);
+        std::optional<scene::Camera> ahead;
+        if (is_moving && source_.has_depth()) ahead = motion_.ahead(now, cost.delay_ms(*link));
+        Frame frame = source_.draw(state, setting_of(quality), ahead);
         if (!is_moving)
             cost.ms *= quality.samples / std::max(1.0, choice_.levels()[last].quality.samples * 1.0);
         cost.bytes = static_cast<double>(frame.what.bytes + frame.what.depth_bytes);
@@ -254,6 +264,7 @@ private:
     engine::LevelChoice choice_;
     double target_ms_;
     engine::Scheduler scheduler_;
+    navigation::CameraMotion motion_;
     protocol::Resize size_;
     Dice dice_;
     std::optional<Drawing> drawing_;
@@ -398,7 +409,7 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
         judged = std::async(std::launch::async, [&, k, judge = std::move(job.image), fresh] {
             const auto shown = [&](const Glass& glass) {
                 const Frame& frame = *glass[k];
-                return Shown{decoded(frame, states[k]), states[frame.what.drawn].camera};
+                return Shown{decoded(frame, states[k]), frame.camera};
             };
             for (std::size_t i = 0; i < links.size(); ++i) {
                 const Errors errors = errors_of(shown(plain[i]), shown(with_depth[i]),

@@ -125,8 +125,12 @@ void RemoteRoom::want_for_viewers() {
         viewer_ = found->first;
     }
     engine::FramesWanted all{viewer_, 0, 0, clients_.at(viewer_).wanted.since_sequence, {}};
-    all.depth = std::ranges::any_of(
-        clients_, [](const auto& entry) { return is_viewer(entry.second.who) && entry.second.wanted.depth; });
+    all.only_warped = true;
+    for (const auto& [name, client] : clients_) {
+        if (!is_viewer(client.who) || client.wanted.client.empty()) continue;
+        all.depth |= client.wanted.depth;
+        all.only_warped &= client.wanted.only_warped;
+    }
     if (!viewers_wanting_.empty()) {
         all.newer_than = viewers_wanting_.rbegin()->first;
         all.count = 1;
@@ -138,7 +142,8 @@ void RemoteRoom::want_for_viewers() {
 
 void RemoteRoom::say_wanted(const engine::FramesWanted& wanted) {
     protocol::EdgeWanted said{
-        wanted.client, wanted.newer_than, wanted.count, wanted.since_sequence, wanted.depth, {}, {}};
+        wanted.client,      wanted.newer_than, wanted.count, wanted.since_sequence, wanted.depth,
+        wanted.only_warped, {},                {}};
     if (wanted.link) {
         said.bytes_per_second = std::min(wanted.link->bytes_per_second, protocol::kFastestLink);
         said.round_trip_ms = std::chrono::duration<double, std::milli>(wanted.link->round_trip).count();

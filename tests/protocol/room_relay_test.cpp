@@ -44,11 +44,12 @@ TEST_CASE("what an edge says reads back the same") {
     CHECK(said.text == "{\"no\": [JSON");
     CHECK(said.sequence == 5);
     CHECK(said.again);
-    const EdgeWanted wanted = round_trip(EdgeWanted{"c1.e1", 8, 2, 3, true, kFastestLink, 0.25});
+    const EdgeWanted wanted = round_trip(EdgeWanted{"c1.e1", 8, 2, 3, true, true, kFastestLink, 0.25});
     CHECK(wanted.newer_than == 8);
     CHECK(wanted.count == 2);
     CHECK(wanted.since_sequence == 3);
     CHECK(wanted.depth);
+    CHECK(wanted.only_warped);
     CHECK(wanted.bytes_per_second == kFastestLink);
     CHECK(wanted.round_trip_ms == 0.25);
     CHECK(round_trip(EdgeAdmission{3, Role::host, "t"}).number == 3);

@@ -644,6 +644,19 @@ export type FrameHeader = {
     backgroundTurns: boolean;
     /** Of the map behind this file; 0: this client has it already. */
     bytes: number;
+    /** Where image and map were drawn from; missing: from the header's `camera`. */
+    camera?: {
+      /** The centre of rotation. */
+      center: Array<number>;
+      /** Where the camera stands. */
+      eye: Array<number>;
+      /** What it looks at. */
+      focus: Array<number>;
+      /** The vertical angle of view in degrees. */
+      fov: number;
+      /** Which way is up in the image. */
+      up: Array<number>;
+    };
     /** Blocks in a row. */
     columns: number;
     /** The frame that the map was made for. */

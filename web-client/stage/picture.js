@@ -72,16 +72,18 @@ export class Picture {
     return 'drawn';
   }
 
-  /** Shows what a camera sees, until the next frame comes; null: what the frame shows. @param {?Camera} camera */
+  /** Shows what a camera sees, until the next frame comes; null: what the header's sees. @param {?Camera} camera */
   look(camera) {
     this.#wanted = camera;
     const { header } = this;
     if (!header) return;
-    const isThere = !camera || isSamePose(camera, header.camera);
+    const from = drawnFrom(header);
+    const asked = camera ?? header.camera;
+    const isThere = isSamePose(asked, from);
     const isWarped = !isThere && this.#map !== null;
-    this.#seen = isWarped ? withinReach(header.camera, camera) : header.camera;
-    this.#screen.draw(isWarped ? { header, to: this.#seen } : null);
-    this.#move = isThere || isWarped ? null : similarity(header.camera, camera, this.#view);
+    this.#seen = isWarped ? withinReach(from, asked) : from;
+    this.#screen.draw(isWarped ? { header, from, to: this.#seen } : null);
+    this.#move = isThere || isWarped ? null : similarity(from, asked, this.#view);
     const { scale: factor, x, y } = this.#move ?? { scale: 1, x: 0, y: 0 };
     const shrunk = shrinkage(this.#box, this.#view);
     const { style } = this.#canvas;
@@ -99,7 +101,7 @@ export class Picture {
     if (!map || !this.header) return null;
     const { width, height } = this.#view;
     const aspect = width / height;
-    const from = this.header.camera;
+    const from = drawnFrom(this.header);
     const view = viewDirection(camera);
     const ray = directionThrough(camera, aspect, 2 * x / width - 1, 2 * y / height - 1);
     const pointAt = (depth) => add(camera.eye, scale(ray, depth / dot(ray, view)));
@@ -168,6 +170,9 @@ export class Picture {
     Object.assign(this.#canvas.dataset, { frame, revision, level: quality?.level ?? '' });
   }
 }
+
+/** The server may draw ahead of the camera that the header names. @param {FrameHeader} header @returns {Camera} */
+const drawnFrom = ({ camera, depth }) => depth?.camera ?? camera;
 
 /** From the window's coordinates to those of a view that is fitted as a whole into the middle of a box. */
 export function viewMapping(box, view) {

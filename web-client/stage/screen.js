@@ -82,9 +82,13 @@ class WarpScreen {
     this.#drawn = null;
   }
 
-  /** As another camera sees the frame; null: as it is. @param {?{header: FrameHeader, to: Camera}} view */
+  /**
+   * As another camera sees the frame; null: as it is.
+   *
+   * @param {?{header: FrameHeader, from: Camera, to: Camera}} view `from`: that it was drawn from
+   */
   draw(view) {
-    const matrix = view && warpMatrix(view.header.camera, view.to, view.header.width / view.header.height);
+    const matrix = view && warpMatrix(view.from, view.to, view.header.width / view.header.height);
     const wanted = String(matrix);
     if (wanted === this.#drawn) return;
     this.#drawn = wanted;

@@ -303,6 +303,39 @@ describe('depth', () => {
     assert.ok(withMap.length > 0);
   });
 
+  test('a view that turns is drawn ahead, where all who get frames have depth', async (t) => {
+    const client = await ContractClient.join(t, server, { depth: true });
+    await client.ask({ type: 'control', action: 'take' });
+    await client.ask({ type: 'resize', ...VIEW });
+    await client.patch({ camera: POSE, navigation: null });
+    await sharp(client);
+    /** By how many degrees the frames that come are drawn ahead. */
+    const turn = async () => {
+      const from = client.frames.length;
+      let seen = from;
+      for (let step = 0; step < 60; ++step) {
+        client.send({ type: 'navigate', rotate: [2, 0] });
+        for (; seen < client.frames.length; ++seen) client.send({ type: 'frame' });
+        await sleep(16);
+      }
+      const azimuth = ({ eye: [x, , z] }) => Math.atan2(x, z) * 180 / Math.PI;
+      return client.frames.slice(from).map(({ header: { camera, depth } }) =>
+        depth?.camera ? (azimuth(depth.camera) - azimuth(camera) + 540) % 360 - 180 : 0);
+    };
+    const ahead = await turn();
+    assert.ok(ahead.filter((degrees) => degrees !== 0).length > ahead.length / 2, `${ahead}`);
+    // The camera goes to the left, so that the scene turns to the right.
+    assert.ok(ahead.every((degrees) => degrees <= 0 && degrees > -45.1), `${ahead}`);
+    const { header } = await sharp(client);
+    assert.equal(header.depth.camera, undefined, 'what is at rest is seen from where it is');
+    nearCamera(header.camera, client.state.camera);
+
+    const other = await ContractClient.join(t, server, { role: 'view' });
+    other.send({ type: 'frame' });
+    await other.until('a frame', () => other.frames.length > 0);
+    assert.ok((await turn()).every((degrees) => degrees === 0), 'this one would see it sway');
+  });
+
   test('it tells how far away is what is seen', async (t) => {
     const client = await steering(t, server);
     const other = await ContractClient.join(t, server, { role: 'view', depth: true });

@@ -168,3 +168,15 @@ test('coordinates go through the bars beside a fitted picture', () => {
   assert.deepEqual(tall(500, 250), { x: 200, y: 400 });
   assert.deepEqual(tall(600, 450), { x: 400, y: 800 });
 });
+
+test('a frame that is drawn ahead is shown as from the camera that its header names', async () => {
+  const page = setUp();
+  const ahead = { ...frame(1), data: new ArrayBuffer(1) };
+  ahead.header.depth = { bytes: 0, camera: { ...CAMERA, eye: [1, 0, 10], focus: [1, 0, 0] } };
+  const shown = page.picture.show(ahead);
+  page.decoded(0, 'one');
+  await shown;
+  // A step to the right moves what is 10 away, where 20 fill the height of 50 pixels, to the left.
+  assert.match(page.canvas.style.transform, /^translate\(2\.50*\d?px, 0px\) scale\(1\)$/);
+  assert.deepEqual(page.picture.placeOf([0, 0, 0]), { x: 50, y: 25 });
+});
