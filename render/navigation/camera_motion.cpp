@@ -45,14 +45,24 @@ void CameraMotion::add(double ms, const scene::Camera& camera) {
     if (steps_.size() > 3) steps_.pop_front();
 }
 
-std::optional<scene::Camera> CameraMotion::ahead(double ms, double ahead) const {
-    if (steps_.size() < 3 || ms - steps_.back().ms > kStillMs) return std::nullopt;
+bool CameraMotion::stands_still(double ms) const {
+    return steps_.size() < 3 || ms - steps_.back().ms > kStillMs;
+}
+
+double CameraMotion::speed(double ms) const {
+    if (stands_still(ms)) return 0;
     const Step &first = steps_[0], &second = steps_[1], &last = steps_[2];
-    const double way = way_between(second.camera, last.camera);
     const double before = way_between(first.camera, second.camera) / (second.ms - first.ms);
-    const double speed = std::min(kFaster * before, way / (last.ms - second.ms));
-    const double farther = std::min(speed * (ms - last.ms + ahead), kFarthest);
+    const double now = way_between(second.camera, last.camera) / (last.ms - second.ms);
+    return 1000 * std::min(kFaster * before, now);
+}
+
+std::optional<scene::Camera> CameraMotion::ahead(double ms, double ahead) const {
+    if (stands_still(ms)) return std::nullopt;
+    const Step &second = steps_[1], &last = steps_[2];
+    const double farther = std::min(speed(ms) * (ms - last.ms + ahead) / 1000, kFarthest);
     if (!(farther > kLeast)) return std::nullopt;
+    const double way = way_between(second.camera, last.camera);
     return on_the_way(second.camera, last.camera, 1 + farther / way);
 }
 

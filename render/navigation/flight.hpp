@@ -18,8 +18,8 @@ enum class Easing {
 
 /// The camera at a part of the way from `a` to `b`, or beyond `b` where that is above 1. Focus, centre and
 /// fov go straight, the distance eye-focus by equal factors in equal parts of the way, and the direction
-/// around the focus by azimuth (the shorter way) and elevation where both stand level and upright, so that the
-/// horizon stays level, else by the shortest turn of the whole frame.
+/// around the focus by azimuth (the shorter way) and elevation where both stand level and upright, so that
+/// the horizon stays level, else by the shortest turn of the whole frame.
 scene::Camera on_the_way(const scene::Camera& a, const scene::Camera& b, double part);
 
 /// A path through cameras in time, from each to the next as on_the_way(). Pure: the same time gives the same

@@ -618,6 +618,11 @@ CLI::Option* add_glass(Command& command, ChartArguments& arguments) {
         ->capture_default_str()
         ->needs(glass)
         ->group(kMeasurement);
+    command
+        .add_flag("--each-level", arguments.each_level,
+                  "Compute it with each level alone, too: how time, bytes and error depend on each other.")
+        ->needs(glass)
+        ->group(kMeasurement);
     return glass;
 }
 

@@ -112,6 +112,7 @@ struct ChartArguments {
     std::vector<std::string> links;               ///< over these; none: the usual ones
     double latency_target_ms = 50;                ///< that the server holds in them
     int every = 1;                                ///< refresh of them is judged
+    bool each_level = false;                      ///< alone, too
     int width = 1280, height = 720;
     int frames = 12;  ///< of each setting
     std::uint64_t most_triangles = 10'000'000;

@@ -1,6 +1,7 @@
 #include "commands/glass_charts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -33,6 +34,7 @@ struct Session {
 };
 
 constexpr auto kLongest = std::chrono::hours(1);
+constexpr std::size_t kWarp = 2;  // of kPredictions
 
 /// Takes down what is to be seen, in images of the view's shape that fit into a size.
 class Recorder {
@@ -124,6 +126,25 @@ Plot time_plot(const Session& session, const SimulatedLink& link, const GlassErr
     return plot;
 }
 
+/// A level, and whether another beats it in all of time, bytes and error.
+struct LevelAtGlass {
+    std::string name;
+    double ms = 0, bytes = 0, error = 0;
+    bool is_beaten = false;
+};
+
+std::vector<LevelAtGlass> levels_at_glass(const GlassErrors& errors) {
+    std::vector<LevelAtGlass> levels;
+    for (const GlassErrors::OfLevel& level : errors.levels)
+        levels.push_back({name_of(level.setting), level.ms, level.bytes, spread_of(level.errors).mean});
+    for (LevelAtGlass& level : levels)
+        level.is_beaten = std::ranges::any_of(levels, [&](const LevelAtGlass& other) {
+            return beats(std::array{other.ms, other.bytes, other.error},
+                         std::array{level.ms, level.bytes, level.error});
+        });
+    return levels;
+}
+
 /// Against the round trip, a line for each prediction.
 Plot links_plot(const std::vector<SimulatedLink>& links,
                 const std::vector<std::vector<GlassErrors>>& of_sessions) {
@@ -146,6 +167,34 @@ Plot links_plot(const std::vector<SimulatedLink>& links,
     return plot;
 }
 
+/// By the levels of each session: time, error and, beside each, its bytes.
+Plot levels_plot(const std::vector<Session>& sessions, const SimulatedLink& link,
+                 const std::vector<GlassErrors>& of_sessions, const std::string& slug) {
+    Plot plot;
+    plot.file = "glass-levels-" + slug;
+    plot.title = "Error at the glass against the level: " + link.name;
+    plot.subtitle = "beside each level: kB a frame";
+    plot.x_label = "ms a frame";
+    plot.y_label = "mean FLIP";
+    Series beaten{Series::Look::dominated, "beaten in time, bytes and error", {}};
+    Series chosen{Series::Look::ring, "the server's choice, on average", {}};
+    for (std::size_t s = 0; s < sessions.size(); ++s) {
+        Series series{Series::Look::line, sessions[s].name, {}, static_cast<int>(s)};
+        for (const LevelAtGlass& level : levels_at_glass(of_sessions[s])) {
+            series.marks.push_back({level.ms, level.error, {}, {}, short_number(level.bytes / 1000)});
+            if (level.is_beaten) beaten.marks.push_back({level.ms, level.error, {}, {}});
+        }
+        plot.series.push_back(std::move(series));
+        const GlassErrors::Delivered& warped = of_sessions[s].delivered[kWarp];
+        if (warped.moving > 0)
+            chosen.marks.push_back(
+                {warped.moving_ms / warped.moving, spread_of(of_sessions[s].errors[kWarp]).mean, {}, {}});
+    }
+    for (Series* series : {&beaten, &chosen})
+        if (!series->marks.empty()) plot.series.push_back(std::move(*series));
+    return plot;
+}
+
 std::string text_of(double value, int digits) {
     char text[32];
     std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -163,6 +212,9 @@ void chart_glass(const ChartArguments& arguments) {
     std::string csv = measure::line_of({"session", "link", "prediction", "mean", "p95", "longest_ms",
                                         "frames", "bytes", "depth_bytes"}) +
                       "\n";
+    std::string levels_csv = measure::line_of(std::vector<std::string>{"session", "link", "level", "ms",
+                                                                       "bytes", "mean", "beaten"}) +
+                             "\n";
     std::vector<Plot> plots;
     std::vector<std::string> slugs;
     std::vector<std::vector<GlassErrors>> all;
@@ -172,7 +224,8 @@ void chart_glass(const ChartArguments& arguments) {
         const std::vector<GlassErrors> of_links = [&] {
             observe::Progress progress;
             const GlassDemand demand{scenes::levels_of(session.sha256, renderer.description()),
-                                     arguments.latency_target_ms, static_cast<std::size_t>(arguments.every)};
+                                     arguments.latency_target_ms, static_cast<std::size_t>(arguments.every),
+                                     arguments.each_level};
             return errors_at_glass(session.states, links, demand, renderer,
                                    [&](double part) { progress.show(part, session.name); });
         }();
@@ -193,6 +246,16 @@ void chart_glass(const ChartArguments& arguments) {
                                          text_of(delivered.depth_bytes, 0)}) +
                        "\n";
             }
+            for (const LevelAtGlass& level : levels_at_glass(errors)) {
+                std::printf("%-24s %-16s %8.1f ms %6.1f kB %8.4f  %s%s\n", session.name.c_str(),
+                            link.name.c_str(), level.ms, level.bytes / 1000, level.error, level.name.c_str(),
+                            level.is_beaten ? " (beaten)" : "");
+                levels_csv +=
+                    measure::line_of(std::vector<std::string>{
+                        session.name, link.name, level.name, text_of(level.ms, 3), text_of(level.bytes, 0),
+                        text_of(level.error, 6), level.is_beaten ? "yes" : "no"}) +
+                    "\n";
+            }
             std::fflush(stdout);
             plots.push_back(time_plot(session, link, errors, arguments.every,
                                       slug_of(session.name + " " + link.name, slugs)));
@@ -202,6 +265,14 @@ void chart_glass(const ChartArguments& arguments) {
     if (arguments.out.empty()) return;
     plots.push_back(links_plot(links, all));
     write_text(arguments.out / "glass.csv", csv);
+    if (arguments.each_level) {
+        write_text(arguments.out / "glass-levels.csv", levels_csv);
+        for (std::size_t l = 0; l < links.size(); ++l) {
+            std::vector<GlassErrors> of_link;
+            for (const auto& of_links : all) of_link.push_back(of_links[l]);
+            plots.push_back(levels_plot(sessions, links[l], of_link, slug_of(links[l].name, slugs)));
+        }
+    }
     draw(plots, arguments.out);
 }
 

@@ -282,7 +282,7 @@ private:
     } newest_, before_newest_;
     warp::BlockChoice blocks_;         ///< of maps of depth
     navigation::CameraMotion motion_;  ///< of the camera that is to be seen
-    std::deque<std::int64_t> drawn_;  ///< numbers of the last frames
+    std::deque<std::int64_t> drawn_;   ///< numbers of the last frames
     std::int64_t next_frame_ = 1;
     std::deque<FrameInFlight> in_flight_;  ///< the last interactive ones
     std::optional<LevelChoice> choice_;

@@ -147,7 +147,8 @@ std::size_t Engine::choose_level() {
     const bool waits = holder != clients_.end() && holder->second.wanted.count > 0;
     const bool warps = holder != clients_.end() && holder->second.wanted.depth && wants_depth();
     const double target = preferred_target(
-        warps ? warped_target(wanted.latency_target_ms, holders_link()) : wanted.latency_target_ms,
+        warps ? warped_target(wanted.latency_target_ms, holders_link(), motion_.speed(ms_since_start()))
+              : wanted.latency_target_ms,
         wanted.preference);
     // The first pictures to a client are small: its link may be slow, and they cannot be taken back.
     if (std::isfinite(target) && waits && !holder->second.wanted.link) return 0;

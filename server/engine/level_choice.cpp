@@ -15,6 +15,9 @@ constexpr auto kLately = std::chrono::seconds(2);  // the mean of another level 
 constexpr std::chrono::seconds kTrial{30};         // what is too slow so soon was tried in vain
 constexpr std::chrono::seconds kFirstBackoff{2}, kLongestBackoff{64};
 
+// Radians a second; and how much longer a frame may take below it that is warped.
+constexpr double kSlow = 0.5, kSharper = 2;
+
 double mean_of(double before, double now) { return before + kNewWeight * (now - before); }
 
 /// Of a level's cost in the table, by pixels of the picture as it is now.
@@ -24,10 +27,10 @@ double for_pixels(double cost, const protocol::Level& level, double pixels) {
 
 }  // namespace
 
-double warped_target(double target_ms, const std::optional<Link>& link) {
-    if (!link) return target_ms;
-    // Less is better in fast turns, more in slow ones.
-    return std::max(target_ms, std::chrono::duration<double, std::milli>(link->round_trip).count());
+double warped_target(double target_ms, const std::optional<Link>& link, double speed) {
+    const double round_trip_ms =
+        link ? std::chrono::duration<double, std::milli>(link->round_trip).count() : 0;
+    return std::max(target_ms, round_trip_ms) * (speed > 0 && speed < kSlow ? kSharper : 1);
 }
 
 double preferred_target(double target_ms, double preference) {

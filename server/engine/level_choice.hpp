@@ -36,8 +36,9 @@ struct LevelDemand {
 /// accurate, by the odds p / (1 - p).
 double preferred_target(double target_ms, double preference);
 /// The latency target for a client that warps its frames: where they are late anyway, fewer and sharper ones
-/// are better (server/measure/README.md).
-double warped_target(double target_ms, const std::optional<Link>& link);
+/// are better, and so they are where the camera moves slowly, by CameraMotion::speed()
+/// (server/measure/README.md).
+double warped_target(double target_ms, const std::optional<Link>& link, double speed);
 
 /// Chooses the level of each interactive frame: the most accurate of a table that holds the target,
 /// by running means of what pictures took. A more accurate one is tried when it is expected to be well within

@@ -30,7 +30,7 @@ struct Picture {
     /// The frame whose depth is this one's, too; 0: none is known.
     std::int64_t depth_frame = 0;
     std::optional<scene::Camera> ahead = {};  ///< that it is drawn from, with its depth; none: the header's
-    bool background_turns = false;  ///< with the camera
+    bool background_turns = false;            ///< with the camera
 };
 
 /// A map of depth as frames hold it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -22,6 +23,10 @@ std::vector<std::size_t> front(std::span<const Tradeoff> points) {
             kept.push_back(i);
         }
     return kept;
+}
+
+bool beats(std::span<const double> a, std::span<const double> b) {
+    return std::ranges::equal(a, b, std::less_equal()) && !std::ranges::equal(a, b);
 }
 
 std::vector<Tradeoff> staircase(std::span<const Tradeoff> points, double top, double right) {

@@ -15,6 +15,9 @@ struct Tradeoff {
 /// one of the two. Of equal points the first.
 std::vector<std::size_t> front(std::span<const Tradeoff> points);
 
+/// Returns whether `a` beats `b`: it costs and errs nowhere more, and somewhere less. Of as many numbers.
+bool beats(std::span<const double> a, std::span<const double> b);
+
 /// Corners of the line below and left of which nothing lies: from each point of the front at its error to the
 /// next one's cost, then down; from the first straight down from `top`, from the last on to `right`.
 std::vector<Tradeoff> staircase(std::span<const Tradeoff> points, double top, double right);

@@ -114,8 +114,14 @@ private:
 class Delivery {
 public:
     Delivery(const std::vector<plan::View>& states, const SimulatedLink& link,
-             const protocol::LevelTable& table, double target_ms, FrameSource& source)
-        : states_(states), link_(link), source_(source), choice_(table), target_ms_(target_ms) {
+             const protocol::LevelTable& table, double target_ms, FrameSource& source,
+             std::optional<std::size_t> level = {})
+        : states_(states),
+          link_(link),
+          source_(source),
+          choice_(table),
+          target_ms_(target_ms),
+          only_level_(level) {
         const plan::View& first = states.front();
         size_ = {static_cast<double>(first.width), static_cast<double>(first.height), 1};
         arrived_.push_back({std::make_shared<const Frame>(source.draw(0, setting_of(engine::kRefined))), 0});
@@ -211,7 +217,10 @@ private:
         std::size_t level = last;
         protocol::Quality quality = engine::kRefined;
         if (is_moving) {
-            level = choice_.choose({size_, {}, target_ms_, link}, time);
+            const double target_ms = source_.has_depth()
+                                         ? engine::warped_target(target_ms_, link, motion_.speed(now))
+                                         : target_ms_;
+            level = only_level_ ? *only_level_ : choice_.choose({size_, {}, target_ms, link}, time);
             quality = choice_.levels()[level].quality;
         } else {
             if (refinement == engine::Refinement::small) quality = choice_.levels().front().quality;
@@ -232,6 +241,8 @@ private:
         if (is_moving)
             choice_.took(level, cost, size_.width * size_.height * quality.scale * quality.scale, time);
 
+        frame.what.is_moving = is_moving;
+        frame.what.ms = cost.ms;
         drawing_ = {std::make_shared<const Frame>(std::move(frame)), state, refinement, now + cost.ms};
     }
 
@@ -263,6 +274,7 @@ private:
     FrameSource& source_;
     engine::LevelChoice choice_;
     double target_ms_;
+    std::optional<std::size_t> only_level_;  ///< none: the server's choice
     engine::Scheduler scheduler_;
     navigation::CameraMotion motion_;
     protocol::Resize size_;
@@ -298,23 +310,26 @@ struct Shown {
     scene::Camera camera;
 };
 
+double mean_flip(const scene::Image& shown, const scene::Image& judge) {
+    const std::vector<float> values = compare::flip(shown, judge);
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double warped_error(const Shown& shown, const plan::View& now, const scene::Image& judge) {
+    const auto& [image, depth] = shown.frame;
+    if (shown.camera == now.camera) return mean_flip(image, judge);
+    return mean_flip(warp::warped(image, depth, shown.camera, now.camera, background_of(now)), judge);
+}
+
 /// `plain`: without depth.
 Errors errors_of(const Shown& plain, const Shown& with_depth, const DecodedFrame& without_delay,
                  const plan::View& now, const scene::Image& judge) {
-    const auto error = [&](const scene::Image& shown) {
-        const std::vector<float> values = compare::flip(shown, judge);
-        return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-    };
-    const warp::Background background = background_of(now);
     Errors errors;
-    errors[0] = errors[1] = error(plain.frame.image);
+    errors[0] = errors[1] = mean_flip(plain.frame.image, judge);
     if (plain.camera != now.camera)
-        errors[1] = error(shifted(plain.frame, plain.camera, now.camera, background));
-    const auto& [image, depth] = with_depth.frame;
-    const bool is_there = with_depth.camera == now.camera;
-    errors[2] =
-        error(is_there ? image : warp::warped(image, depth, with_depth.camera, now.camera, background));
-    errors[3] = is_there ? errors[2] : error(without_delay.image);
+        errors[1] = mean_flip(shifted(plain.frame, plain.camera, now.camera, background_of(now)), judge);
+    errors[2] = warped_error(with_depth, now, judge);
+    errors[3] = with_depth.camera == now.camera ? errors[2] : mean_flip(without_delay.image, judge);
     return errors;
 }
 
@@ -353,9 +368,24 @@ std::vector<SimulatedLink> usual_links() {
 
 namespace {
 
+/// The frame on the glass at each refresh.
+using Glass = std::vector<std::shared_ptr<const Frame>>;
+
+/// Those for frames while things move, and what they cost in a view's size.
+std::vector<GlassErrors::OfLevel> levels_of(const protocol::LevelTable& table, const plan::View& view) {
+    const engine::LevelChoice choice(table);
+    std::vector<GlassErrors::OfLevel> levels;
+    for (std::size_t level = 0; level < choice.levels().size(); ++level) {
+        const protocol::Quality& quality = choice.levels()[level].quality;
+        const engine::PictureCost cost =
+            choice.expected(level, quality.scale * quality.scale * view.width * view.height, {});
+        levels.push_back({setting_of(quality), cost.ms, cost.bytes, {}});
+    }
+    return levels;
+}
+
 /// What came of a delivery, but for its errors.
-GlassErrors::Delivered counted(const std::vector<std::shared_ptr<const Frame>>& shown,
-                               const std::vector<plan::View>& states) {
+GlassErrors::Delivered counted(const Glass& shown, const std::vector<plan::View>& states) {
     GlassErrors::Delivered result;
     double frozen_ms = 0;
     for (std::size_t k = 1; k < shown.size(); ++k) {
@@ -364,6 +394,11 @@ GlassErrors::Delivered counted(const std::vector<std::shared_ptr<const Frame>>& 
             ++result.frames;
             result.bytes += static_cast<double>(shown[k]->what.bytes);
             result.depth_bytes += static_cast<double>(shown[k]->what.depth_bytes);
+            if (shown[k]->what.is_moving) {
+                ++result.moving;
+                result.moving_ms += shown[k]->what.ms;
+                result.moving_bytes += static_cast<double>(shown[k]->what.bytes + shown[k]->what.depth_bytes);
+            }
         }
         const bool is_right = states[shown[k]->what.drawn] == states[k];
         frozen_ms = is_new || is_right ? 0 : frozen_ms + kRefreshMs;
@@ -379,19 +414,24 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
                                          renderer::Renderer& renderer, const PartDone& done) {
     // Each link has sources of its own: what one chooses is nothing to another.
     engine::JpegEncoder jpeg;
-    using Glass = std::vector<std::shared_ptr<const Frame>>;
     std::vector<FrameSource> without_delay(links.size(), FrameSource(states, true, renderer, jpeg));
     std::vector<Glass> plain, with_depth;
+    std::vector<std::vector<Glass>> of_levels;
     std::vector<GlassErrors> results;
     for (const SimulatedLink& link : links) {
         FrameSource source(states, false, renderer, jpeg), depth_source(states, true, renderer, jpeg);
         plain.push_back(Delivery(states, link, demand.levels, demand.target_ms, source).run());
-        const engine::Link measured{link.bytes_per_second, duration_of(link.round_trip_ms)};
-        const double target_ms = engine::warped_target(demand.target_ms, measured);
-        with_depth.push_back(Delivery(states, link, demand.levels, target_ms, depth_source).run());
+        with_depth.push_back(Delivery(states, link, demand.levels, demand.target_ms, depth_source).run());
         GlassErrors& result = results.emplace_back();
         result.delivered[0] = result.delivered[1] = counted(plain.back(), states);
         result.delivered[2] = result.delivered[3] = counted(with_depth.back(), states);
+        of_levels.emplace_back();
+        if (!demand.each_level) continue;
+        result.levels = levels_of(demand.levels, states.front());
+        for (std::size_t level = 0; level < result.levels.size(); ++level) {
+            FrameSource one(states, true, renderer, jpeg);
+            of_levels.back().push_back(Delivery(states, link, demand.levels, 0, one, level).run());
+        }
     }
     // An image is judged while the next one is drawn.
     std::future<void> judged;
@@ -415,6 +455,9 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
                 const Errors errors = errors_of(shown(plain[i]), shown(with_depth[i]),
                                                 decoded(fresh[i], states[k]), states[k], judge);
                 for (std::size_t p = 0; p < errors.size(); ++p) results[i].errors[p].push_back(errors[p]);
+                for (std::size_t level = 0; level < of_levels[i].size(); ++level)
+                    results[i].levels[level].errors.push_back(
+                        warped_error(shown(of_levels[i][level]), states[k], judge));
             }
         });
         if (done) done(static_cast<double>(k + 1) / static_cast<double>(states.size()));

@@ -39,19 +39,30 @@ struct ShownFrame {
     std::size_t drawn = 0;  ///< the refresh whose state it shows
     Setting setting = {};
     std::size_t bytes = 0, depth_bytes = 0;  ///< of its file, and of its depth
+    bool is_moving = false;                  ///< one that is quick rather than accurate
+    double ms = 0;                           ///< that it takes the server
 };
 
 /// The error at the glass: mean FLIP between what a client's glass shows at a refresh and what a server
 /// without delay would show then, with every triangle and kGlassSamples samples a pixel.
 struct GlassErrors {
     struct Delivered {
-        int frames = 0;                     ///< that were shown
-        double bytes = 0, depth_bytes = 0;  ///< of all of them
-        double longest_ms = 0;              ///< that the same frame was shown while another was due
+        int frames = 0;                          ///< that were shown
+        double bytes = 0, depth_bytes = 0;       ///< of all of them
+        double longest_ms = 0;                   ///< that the same frame was shown while another was due
+        int moving = 0;                          ///< of the frames: while things move
+        double moving_ms = 0, moving_bytes = 0;  ///< of all of those; bytes with their depth
     };
     /// By prediction; errors of each judged refresh.
     std::array<std::vector<double>, kPredictions.size()> errors;
     std::array<Delivered, kPredictions.size()> delivered;
+    /// With the warp, if all that moves is drawn at one level; in the table's order.
+    struct OfLevel {
+        Setting setting;
+        double ms = 0, bytes = 0;    ///< of a frame, as the table has it
+        std::vector<double> errors;  ///< of each judged refresh
+    };
+    std::vector<OfLevel> levels;
 };
 inline constexpr int kGlassSamples = 16;
 
@@ -60,6 +71,7 @@ struct GlassDemand {
     protocol::LevelTable levels;  ///< frames are taken to cost what it says
     double target_ms = 50;        ///< from an input to its frame, less the round trip; see warped_target()
     std::size_t every = 1;        ///< refresh is judged
+    bool each_level = false;      ///< GlassErrors::levels are wanted
 };
 
 /// Of each link. `states`: what is to be seen at each refresh of a session, in the glass' size. The same

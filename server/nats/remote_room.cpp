@@ -141,9 +141,8 @@ void RemoteRoom::want_for_viewers() {
 }
 
 void RemoteRoom::say_wanted(const engine::FramesWanted& wanted) {
-    protocol::EdgeWanted said{
-        wanted.client,      wanted.newer_than, wanted.count, wanted.since_sequence, wanted.depth,
-        wanted.only_warped, {},                {}};
+    protocol::EdgeWanted said{wanted.client, wanted.newer_than,  wanted.count, wanted.since_sequence,
+                              wanted.depth,  wanted.only_warped, {},           {}};
     if (wanted.link) {
         said.bytes_per_second = std::min(wanted.link->bytes_per_second, protocol::kFastestLink);
         said.round_trip_ms = std::chrono::duration<double, std::milli>(wanted.link->round_trip).count();

@@ -349,7 +349,7 @@ void RoomOwner::handle(const std::string& edge, const protocol::EdgeSaid& said) 
 void RoomOwner::handle(const std::string& edge, const protocol::EdgeWanted& wanted) {
     if (!find(edge, wanted.client)) return;
     engine::FramesWanted frames{wanted.client, wanted.newer_than, wanted.count, wanted.since_sequence, {},
-                                wanted.depth, wanted.only_warped};
+                                wanted.depth,  wanted.only_warped};
     if (wanted.bytes_per_second && wanted.round_trip_ms)
         frames.link = engine::Link{*wanted.bytes_per_second,
                                    std::chrono::duration_cast<base::Clock::duration>(

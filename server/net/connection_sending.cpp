@@ -46,8 +46,8 @@ void Connection::on_grant(const protocol::FrameGrant& grant, std::optional<std::
 /// Tells the engine what may be sent, where that has changed.
 void Connection::ask_for_frames(base::Clock::time_point now) {
     const std::int64_t known = holds_in_vain(now) ? room_->newest->header.frame : last_frame_;
-    const engine::FramesWanted wanted{client_,         known,        flow_.frames_allowed(now), granted_at_,
-                                      flow_.link(now), wants_depth_, wants_depth_};
+    const engine::FramesWanted wanted{
+        client_, known, flow_.frames_allowed(now), granted_at_, flow_.link(now), wants_depth_, wants_depth_};
     if (wanted == wanted_) return;
     const bool matters = wanted.count > 0 || wanted_.count > 0;
     wanted_ = wanted;

@@ -235,7 +235,10 @@ TEST_CASE("where no link is known, the server's part counts alone") {
 
 TEST_CASE("who warps frames waits for them no longer than the link takes anyway") {
     using std::chrono::milliseconds;
-    CHECK(warped_target(50, {}) == 50);
-    CHECK(warped_target(50, Link{1e6, milliseconds(20)}) == 50);
-    CHECK(warped_target(50, Link{1e6, milliseconds(200)}) == 200);
+    CHECK(warped_target(50, {}, 0) == 50);
+    CHECK(warped_target(50, Link{1e6, milliseconds(20)}, 0) == 50);
+    CHECK(warped_target(50, Link{1e6, milliseconds(200)}, 0) == 200);
+    CHECK(warped_target(50, Link{1e6, milliseconds(200)}, 3) == 200);
+    CHECK(warped_target(50, Link{1e6, milliseconds(200)}, 0.2) == 400);
+    CHECK(warped_target(50, {}, 0.2) == 100);
 }

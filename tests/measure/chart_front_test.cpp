@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 #include "measure/calibrate.hpp"
@@ -35,6 +36,14 @@ TEST_CASE("the front holds what no other point beats, by rising cost") {
     const std::vector<Tradeoff> points{{4, 1}, {1, 8}, {2, 9}, {2, 4}, {5, 1}, {3, 4}};
     CHECK(front(points) == std::vector<std::size_t>{1, 3, 0});
     CHECK(front({}).empty());
+}
+
+TEST_CASE("what costs and errs nowhere more, and somewhere less, beats the other") {
+    using Point = std::array<double, 3>;
+    CHECK(beats(Point{1, 2, 3}, Point{1, 2, 4}));
+    CHECK(beats(Point{0, 1, 2}, Point{1, 2, 4}));
+    CHECK_FALSE(beats(Point{1, 2, 3}, Point{1, 2, 3}));
+    CHECK_FALSE(beats(Point{1, 3, 3}, Point{1, 2, 4}));
 }
 
 TEST_CASE("of equal points the first is in the front, and an exact one ends it") {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string>
 
-#include "near.hpp"
 #include "navigation/camera_moves.hpp"
+#include "near.hpp"
 
 using namespace vrut;
 using navigation::CameraMotion;
