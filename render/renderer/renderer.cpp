@@ -139,14 +139,15 @@ struct Renderer::Impl {
 
 void Renderer::Impl::read_depth(plan::RenderJob& job, const gl::Framebuffer& target) {
     const Clock::time_point start = Clock::now();
-    if (scene)
-        depths.draw(
-            job.planner->plan().scene, target, *scene,
-            math::reversed_clip_from_view(plan::projection_of(job.view), plan::near_distance(job.view)));
+    const double near = plan::near_distance(job.view);
     depth.resize(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height()));
     target.read_depth(depth);
-    job.depth = warp::depth_map_of(depth, target.width(), target.height(), plan::near_distance(job.view),
-                                   job.depth_size);
+    std::span<const float> transparent;
+    if (scene)
+        transparent = depths.read(job.planner->plan().scene, *scene,
+                                  math::reversed_clip_from_view(plan::projection_of(job.view), near),
+                                  warp::kAlso * job.depth_size.columns, warp::kAlso * job.depth_size.rows);
+    job.depth = warp::depth_map_of(depth, target.width(), target.height(), near, job.depth_size, transparent);
     job.stats.readback_ms += milliseconds_since(start);
 }
 

@@ -30,7 +30,7 @@ double median(std::vector<double> values) {
 }
 
 struct Costs {
-    std::vector<double> draw_ms, encode_ms, bytes, depth_encode_ms, depth_bytes, blocks;
+    std::vector<double> draw_ms, read_ms, encode_ms, bytes, depth_encode_ms, depth_bytes, blocks;
 };
 
 }  // namespace
@@ -57,6 +57,7 @@ int main(int count, char** arguments) {
             while (!renderer.step(job)) {
             }
             costs.draw_ms.push_back(milliseconds_since(start));
+            costs.read_ms.push_back(job.stats.readback_ms);
             start = Clock::now();
             const std::size_t bytes = job.planes.bytes.empty() ? encoder.encode(job.image, 75, true).size()
                                                                : encoder.encode(job.planes, 75).size();
@@ -70,10 +71,10 @@ int main(int count, char** arguments) {
             costs.blocks.push_back(job.depth.columns * job.depth.rows);
             blocks.took(map_bytes, bytes);
         }
-    const double more = median(with.draw_ms) - median(without.draw_ms);
-    std::printf("draw %.2f ms, with depth %.2f (%.2f more); JPEG %.2f ms, %.0f bytes\n",
-                median(without.draw_ms), median(with.draw_ms), more, median(without.encode_ms),
-                median(without.bytes));
+    std::printf(
+        "draw %.2f ms, with depth %.2f; of it read %.2f ms, with depth %.2f; JPEG %.2f ms, %.0f bytes\n",
+        median(without.draw_ms), median(with.draw_ms), median(without.read_ms), median(with.read_ms),
+        median(without.encode_ms), median(without.bytes));
     std::printf("map %.0f blocks, %.2f ms, %.0f bytes (%.1f %%)\n", median(with.blocks),
                 median(with.depth_encode_ms), median(with.depth_bytes),
                 100 * median(with.depth_bytes) / median(with.bytes));

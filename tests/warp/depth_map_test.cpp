@@ -68,6 +68,30 @@ TEST_CASE("what is infinitely far is 0") {
     CHECK(empty.scale == 0);
 }
 
+TEST_CASE("what an image's depth has not counts, too, where it is nearer") {
+    constexpr int kWidth = 24, kHeight = 16;
+    const auto size = depth_map_size(kWidth, kHeight, 4);
+    const std::vector<float> wall = depth_of(kWidth, kHeight, [](int, int) { return 0.5; });
+    // A pane before the left half, whose lower half is behind the wall.
+    std::vector<float> pane(static_cast<std::size_t>(kAlso * size.columns * kAlso * size.rows), 0);
+    const int columns = kAlso * size.columns, rows = kAlso * size.rows;
+    for (int y = 0; y < rows; ++y)  // from the bottom up
+        for (int x = 0; x < columns / 2; ++x)
+            pane[static_cast<std::size_t>(y * columns + x)] = y < rows / 2 ? 0.01F : 0.4F;
+    const DepthMap map = depth_map_of(wall, kWidth, kHeight, kNear, size, pane);
+    const DepthMap alone = depth_map_of(wall, kWidth, kHeight, kNear, size);
+    for (int row = 0; row < size.rows; ++row)
+        for (int column = 0; column < size.columns; ++column) {
+            CAPTURE(row);
+            CAPTURE(column);
+            const auto block = static_cast<std::size_t>(row * size.columns + column);
+            const bool is_before = row < size.rows / 2 && column < size.columns / 2;
+            CHECK(map.far[block] / 255.0 * map.scale ==
+                  doctest::Approx(is_before ? 0.4 / kNear : alone.far[block] / 255.0 * alone.scale)
+                      .epsilon(0.01));
+        }
+}
+
 TEST_CASE("images of any size have at most kMostBlocks blocks a side") {
     for (const auto& size : {std::pair(1, 1), std::pair(1280, 3), std::pair(1281, 720), std::pair(3, 4000)}) {
         const int width = size.first, height = size.second;

@@ -14,11 +14,15 @@ bool is_clear(const scene::Material& material, const plan::DrawItem& item) {
 
 }  // namespace
 
-void DepthPass::draw(const plan::DrawLists& lists, const Framebuffer& target, GpuScene& scene,
-                     const glm::dmat4& clip_from_view) {
-    target.bind();
+const std::vector<float>& DepthPass::read(const plan::DrawLists& lists, GpuScene& scene,
+                                          const glm::dmat4& clip_from_view, int width, int height) {
+    if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
+    target_->bind();
     set_scissor({});
     PipelineState state;
+    apply(state);
+    glClearDepth(0);
+    glClear(GL_DEPTH_BUFFER_BIT);
     state.color_write = false;
     SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);
     plan::FrameStats not_counted;
@@ -30,6 +34,9 @@ void DepthPass::draw(const plan::DrawLists& lists, const Framebuffer& target, Gp
             apply(state.for_item(item));
             draw_triangles(geometry, not_counted);
         }
+    depth_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    target_->read_depth(depth_);
+    return depth_;
 }
 
 }  // namespace vrut::gl

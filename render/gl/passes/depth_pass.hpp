@@ -1,6 +1,8 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
+#include <vector>
 
 #include "gl/framebuffer.hpp"
 #include "gl/gpu_scene.hpp"
@@ -9,15 +11,20 @@
 
 namespace vrut::gl {
 
-/// Adds transparent items to the depth of a target in which opaque ones are drawn, but for clear ones.
+/// The depth of transparent items, which the depth of an image has not: but for clear ones.
 class DepthPass {
 public:
     explicit DepthPass(Programs& programs) : programs_(programs) {}
-    void draw(const plan::DrawLists& lists, const Framebuffer& target, GpuScene& scene,
-              const glm::dmat4& clip_from_view);
+    /// Returns `width` · `height` samples, at the middle of equal parts of the image, rows from the bottom
+    /// up: what is nearest there, opaque or not in front of it or behind it, and 0 where nothing is. They
+    /// stay until the next call.
+    const std::vector<float>& read(const plan::DrawLists& lists, GpuScene& scene,
+                                   const glm::dmat4& clip_from_view, int width, int height);
 
 private:
     Programs& programs_;
+    std::optional<Framebuffer> target_;
+    std::vector<float> depth_;
 };
 
 }  // namespace vrut::gl
