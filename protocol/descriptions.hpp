@@ -117,6 +117,8 @@ void describe(V& v, const Pointer*) {
                "When it happened, in milliseconds of the client's own clock.");
     v.optional("frame", &Pointer::frame, kId,
                "Number of the frame that the user saw; without it the newest drawn counts.");
+    v.optional("touched", &Pointer::touched, kPosition,
+               "With the first move of a drag: what the client's own picture shows there.");
 }
 
 template <class V>
@@ -129,6 +131,7 @@ void describe(V& v, const Wheel*) {
     v.inlined(&Wheel::modifiers);
     v.optional("timeStamp", &Wheel::time_stamp, kTimeStamp,
                "When it happened, in milliseconds of the client's own clock.");
+    v.optional("touched", &Wheel::touched, kPosition, "What the client's own picture shows there.");
 }
 
 template <class V>

@@ -78,6 +78,7 @@ struct Pointer {
     Modifiers modifiers;
     std::optional<double> time_stamp;
     std::optional<std::int64_t> frame;
+    std::optional<glm::dvec3> touched;  ///< what a drag that begins is about; none: what the server finds
 };
 
 struct Wheel {
@@ -85,6 +86,7 @@ struct Wheel {
     int delta_mode = 0;  ///< 0 pixels, 1 lines, 2 pages
     Modifiers modifiers;
     std::optional<double> time_stamp;
+    std::optional<glm::dvec3> touched;
 };
 
 struct Key {

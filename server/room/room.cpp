@@ -477,7 +477,7 @@ void Room::use_holders_size() {
 
 // --- the camera
 
-navigation::NavigationContext Room::navigation_context() const {
+navigation::NavigationContext Room::navigation_context(const std::optional<glm::dvec3>& touched) const {
     const protocol::NavigationState& navigation = state_.navigation;
     navigation::NavigationContext context;
     context.width = view_size_.width;
@@ -489,7 +489,8 @@ navigation::NavigationContext Room::navigation_context() const {
     context.zoom_speed = navigation.zoom_speed;
     context.style = static_cast<navigation::NavigationStyle>(navigation.style);
     context.turn_about_touched = navigation.turn_about == protocol::NavigationState::TurnAbout::touched;
-    context.surface_at = [this](const scene::Camera& camera, const glm::dvec2& place) {
+    context.surface_at = [this, touched](const scene::Camera& camera, const glm::dvec2& place) {
+        if (touched) return touched;
         Frame seen = present();
         seen.camera = camera;
         const std::optional<mesh::Hit> hit = hit_at(seen, place.x, place.y, false);

@@ -322,7 +322,8 @@ private:
     double aspect() const { return view_size_.width / view_size_.height; }
     /// What is fitted avoids it.
     navigation::Cover cover() const;
-    navigation::NavigationContext navigation_context() const;
+    /// `touched`: what a client sees where it touches; none: what is found there.
+    navigation::NavigationContext navigation_context(const std::optional<glm::dvec3>& touched = {}) const;
     /// From a drag: it goes on from where it began.
     void drag_camera(const scene::Camera& camera);
     /// From anything else: drags begin anew there.

@@ -43,7 +43,7 @@ void Room::apply(const Received& received, const protocol::Pointer& pointer) {
     steer(received);
     if (press) tap_.reset();
     const navigation::PointerInput input = input_of(received.client, pointer);
-    const navigation::NavigationContext context = navigation_context();
+    const navigation::NavigationContext context = navigation_context(pointer.touched);
     drag_camera(gestures_.pointer(input, camera(), context));
     const auto click = clicks_.pointer(input, {pointer.time_stamp, time_}, context.style);
     const bool taps = state_.navigation.tap_swings && pointer.event == protocol::Pointer::Event::up;
@@ -61,7 +61,7 @@ void Room::apply(const Received& received, const protocol::Wheel& wheel) {
     steer(received);
     const navigation::WheelInput input{
         wheel.delta_y, static_cast<navigation::WheelInput::Unit>(wheel.delta_mode), wheel.x, wheel.y};
-    move_camera(navigation::wheel(input, camera(), navigation_context()));
+    move_camera(navigation::wheel(input, camera(), navigation_context(wheel.touched)));
 }
 
 void Room::apply(const Received& received, const protocol::Key& key) {

@@ -65,6 +65,31 @@ TEST_CASE("the first control client holds control, however quiet it is") {
     CHECK(stage.holder() == "a");
 }
 
+TEST_CASE("a pan and the wheel are about what the client says that it shows there") {
+    // The eye stands at (1, 0, 8) and sees nothing at these places, which lie at the focus' depth then.
+    const auto panned = [](const std::optional<glm::dvec3>& touched) {
+        Stage stage("a");
+        const double before = stage.state()["camera"]["eye"][0];
+        stage.say("a", finger("down", 600, 100, 1));
+        stage.say("a", finger("down", 680, 100, 2));
+        json move = json::parse(finger("move", 610, 100, 1));
+        if (touched) move["touched"] = {touched->x, touched->y, touched->z};
+        stage.say("a", move.dump());
+        stage.say("a", finger("move", 690, 100, 2));
+        return stage.state()["camera"]["eye"][0].get<double>() - before;
+    };
+    const double at_focus = panned({});
+    CHECK(at_focus != 0);
+    CHECK(panned(glm::dvec3(0, 0, 4)) == doctest::Approx(at_focus / 2));
+    CHECK(panned(glm::dvec3(1, 1, -8)) == doctest::Approx(2 * at_focus));
+
+    Stage stage("a");
+    json wheel = json::parse(kWheel);
+    wheel["touched"] = {0.5, 0, 0};
+    stage.say("a", wheel.dump());
+    CHECK(stage.state()["camera"]["focus"][0].get<double>() == doctest::Approx(1 - 0.5 * (1 - 1 / 1.1)));
+}
+
 TEST_CASE("clients of one name are told apart by a number") {
     Stage stage("");
     const auto join = [&](const std::string& client, const std::string& name, const std::string& key = {}) {

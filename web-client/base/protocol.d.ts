@@ -206,6 +206,8 @@ export type ClientPointercancel = {
   shiftKey?: boolean;
   /** When it happened, in milliseconds of the client's own clock. */
   timeStamp?: number;
+  /** With the first move of a drag: what the client's own picture shows there. */
+  touched?: Array<number>;
   type: 'pointercancel';
   /** CSS pixels from the view's left edge. */
   x: number;
@@ -236,6 +238,8 @@ export type ClientPointerdown = {
   shiftKey?: boolean;
   /** When it happened, in milliseconds of the client's own clock. */
   timeStamp?: number;
+  /** With the first move of a drag: what the client's own picture shows there. */
+  touched?: Array<number>;
   type: 'pointerdown';
   /** CSS pixels from the view's left edge. */
   x: number;
@@ -266,6 +270,8 @@ export type ClientPointermove = {
   shiftKey?: boolean;
   /** When it happened, in milliseconds of the client's own clock. */
   timeStamp?: number;
+  /** With the first move of a drag: what the client's own picture shows there. */
+  touched?: Array<number>;
   type: 'pointermove';
   /** CSS pixels from the view's left edge. */
   x: number;
@@ -296,6 +302,8 @@ export type ClientPointerup = {
   shiftKey?: boolean;
   /** When it happened, in milliseconds of the client's own clock. */
   timeStamp?: number;
+  /** With the first move of a drag: what the client's own picture shows there. */
+  touched?: Array<number>;
   type: 'pointerup';
   /** CSS pixels from the view's left edge. */
   x: number;
@@ -430,6 +438,8 @@ export type ClientWheel = {
   shiftKey?: boolean;
   /** When it happened, in milliseconds of the client's own clock. */
   timeStamp?: number;
+  /** What the client's own picture shows there. */
+  touched?: Array<number>;
   type: 'wheel';
   /** CSS pixels from the view's left edge. */
   x: number;

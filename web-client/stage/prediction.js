@@ -79,6 +79,17 @@ export class Prediction {
     if (this.#shown && this.#steers) this.#unsent.set(message.pointerId, message);
   }
 
+  /**
+   * A message that is about to be sent, with the point of a surface that it is about, if any, as this page shows it: so
+   * the server finds the same.
+   */
+  withTouched(message) {
+    if (!this.#shown || !this.#steers || !isInput(message)) return message;
+    const touching = { ...message };
+    this.#applied(this.#last.gestures.copy(), touching, /** @type {Camera} */ (this.camera));
+    return touching;
+  }
+
   sent(message) {
     this.#unsent.delete(message.pointerId);
     if (!this.#shown || !this.#steers) return;
@@ -149,9 +160,12 @@ export class Prediction {
     }
   }
 
-  /** Where a message leads; `gestures` take it. @param {Gestures} gestures @returns {Camera} */
+  /** Where a message leads; `gestures` take it, and it takes what it touches. @param {Gestures} gestures @returns {Camera} */
   #applied(gestures, message, camera) {
-    const context = this.#context();
+    const context = {
+      ...this.#context(),
+      surfaceAt: (from, place) => (message.touched ??= this.#surfaceAt?.(from, place) ?? undefined) ?? null,
+    };
     switch (message.type) {
       case 'wheel':
         return gestures.wheel(message, camera, context);

@@ -52,7 +52,7 @@ export class Stage {
     });
     const partBar = new PartBar(find('selection'), { commands, leave: () => this.#canvas.focus() });
     this.#input = new Input(this.#canvas, {
-      send: (message) => connection.send(message),
+      send: (message) => connection.send(this.#prediction.withTouched(message)),
       mapping: () => this.#picture.mapping(),
       rules: () => connection.input,
       // A server that has begun anew knows nothing of the frames before.

@@ -323,6 +323,23 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
       await touch('touchEnd');
     }));
 
+  test('so is a pan that begins on the floor, where the server finds nothing', async () => {
+    const [a, b] = [[610, 480], [690, 480]];
+    await settled();
+    assert.equal((await tablet.pick([650, 480])).point, undefined);
+    await foretold('floor', async () => {
+      await touch('touchStart', a);
+      await touch('touchStart', a, b);
+      for (let step = 1; step <= 4; step += 1) {
+        await touch('touchMove', [a[0] - 15 * step, a[1] - 8 * step], [b[0] - 15 * step, b[1] - 8 * step]);
+        await nextRefreshes();
+      }
+      await touch('touchEnd');
+    });
+    const moves = tablet.wire.sent.filter(({ type, touched }) => type === 'pointermove' && touched);
+    assert.ok(Math.abs(moves.at(-1).touched[1]) < 0.05, 'on the floor');
+  });
+
   test('so are keys', () =>
     foretold('keys', async () => {
       await tablet.page.keyboard.press('ArrowLeft');

@@ -280,6 +280,34 @@ test('where the server finds the touched surface deeper, later moves go as much 
   assertSamePose(page.prediction.camera, panned(120), 'after 100 pixels more');
 });
 
+test('the server hears which point a drag, or the wheel, is about', () => {
+  const touched = [0.1, 0.2, 1];
+  const page = setUp({ surfaceAt: () => touched });
+  const say = (message) => {
+    const told = page.prediction.withTouched(message);
+    page.send(told);
+    return told.touched;
+  };
+  assert.equal(say(finger('down', 1, 500, 400)), undefined);
+  assert.equal(say(finger('move', 1, 510, 400)), undefined, 'a turn about the centre');
+  assert.equal(say(finger('down', 2, 700, 400)), undefined);
+  assert.deepEqual(say(finger('move', 1, 520, 400)), touched);
+  assert.equal(say(finger('move', 2, 720, 400)), undefined, 'it is known by now');
+  assert.equal(say(finger('up', 1, 520, 400)), undefined);
+  assert.equal(say(finger('up', 2, 720, 400)), undefined);
+  const wheel = { type: 'wheel', x: 500, y: 400, deltaX: 0, deltaY: -100, deltaMode: 0 };
+  assert.deepEqual(say(wheel), touched);
+  assert.equal(wheel.touched, undefined, 'what was asked for stays as it is');
+});
+
+test('where nothing is touched, or it is not known, the server finds out', () => {
+  for (const surfaceAt of [() => null, undefined]) {
+    const page = setUp({ surfaceAt });
+    page.send(finger('down', 1, 500, 400), finger('down', 2, 700, 400));
+    assert.equal(page.prediction.withTouched(finger('move', 1, 520, 400)).touched, undefined);
+  }
+});
+
 test('a patch of this page makes drags begin anew', () => {
   const page = setUp();
   page.send(finger('down', 1, 500, 400), finger('down', 2, 700, 400), finger('move', 2, 740, 400));
