@@ -167,21 +167,27 @@ Plot links_plot(const std::vector<SimulatedLink>& links,
     return plot;
 }
 
-/// By the levels of each session: time, error and, beside each, its bytes.
+/// By the levels of each session: time, error and, beside each, its bytes; what another level beats in all of
+/// them; and what the server chooses, on average.
 Plot levels_plot(const std::vector<Session>& sessions, const SimulatedLink& link,
                  const std::vector<GlassErrors>& of_sessions, const std::string& slug) {
     Plot plot;
     plot.file = "glass-levels-" + slug;
     plot.title = "Error at the glass against the level: " + link.name;
-    plot.subtitle = "beside each level: kB a frame";
+    plot.subtitle = "beside each level: kB a frame; chosen: the server's levels, on average";
     plot.x_label = "ms a frame";
     plot.y_label = "mean FLIP";
-    Series beaten{Series::Look::dominated, "beaten in time, bytes and error", {}};
-    Series chosen{Series::Look::ring, "the server's choice, on average", {}};
+    Series beaten{Series::Look::dominated, "beaten", {}};
+    Series chosen{Series::Look::ring, "chosen", {}};
     for (std::size_t s = 0; s < sessions.size(); ++s) {
         Series series{Series::Look::line, sessions[s].name, {}, static_cast<int>(s)};
         for (const LevelAtGlass& level : levels_at_glass(of_sessions[s])) {
-            series.marks.push_back({level.ms, level.error, {}, {}, short_number(level.bytes / 1000)});
+            const bool is_first = s == 0;  // their bytes are the same
+            series.marks.push_back({level.ms,
+                                    level.error,
+                                    {},
+                                    {},
+                                    is_first ? short_number(level.bytes / 1000) + " kB" : std::string()});
             if (level.is_beaten) beaten.marks.push_back({level.ms, level.error, {}, {}});
         }
         plot.series.push_back(std::move(series));
