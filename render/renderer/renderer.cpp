@@ -146,7 +146,7 @@ void Renderer::Impl::read_depth(plan::RenderJob& job, const gl::Framebuffer& tar
     if (scene)
         transparent = depths.read(job.planner->plan().scene, *scene,
                                   math::reversed_clip_from_view(plan::projection_of(job.view), near),
-                                  warp::kAlso * job.depth_size.columns, warp::kAlso * job.depth_size.rows);
+                                  warp::kAddedSide * job.depth_size.columns, warp::kAddedSide * job.depth_size.rows);
     job.depth = warp::depth_map_of(depth, target.width(), target.height(), near, job.depth_size, transparent);
     job.stats.readback_ms += milliseconds_since(start);
 }

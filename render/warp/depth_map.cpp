@@ -97,7 +97,7 @@ std::size_t size_of(int columns, int rows) {
 /// An image's depth at the middle of each part of its blocks, in steps, rows from the top down.
 struct Samples {
     Samples(std::span<const float> depth, int width, int height, const DepthMapSize& size,
-            std::span<const float> also)
+            std::span<const float> added)
         : columns(static_cast<std::size_t>(DepthMap::kBits) * static_cast<std::size_t>(size.columns)) {
         const auto pixels = [](std::size_t parts, int side) {
             std::vector<std::size_t> at(parts);
@@ -115,7 +115,7 @@ struct Samples {
                 depth.data() + (static_cast<std::size_t>(height) - 1 - y) * static_cast<std::size_t>(width);
             for (const std::size_t x : across) *value++ = row[x];
         }
-        if (!also.empty()) add(values, also);
+        if (!added.empty()) add(values, added);
         // By several at once: the compiler may not reorder a maximum of floats.
         std::array<float, kParts> largest{};
         for (std::size_t i = 0; i < values.size(); i += largest.size())
@@ -136,13 +136,13 @@ struct Samples {
     }
 
     /// Its rows go from the bottom up.
-    void add(std::vector<float>& values, std::span<const float> also) const {
-        constexpr std::size_t kRepeated = DepthMap::kBits / kAlso;
-        const std::size_t row_size = columns / kRepeated, rows = also.size() / row_size;
+    void add(std::vector<float>& values, std::span<const float> added) const {
+        constexpr std::size_t kRepeated = DepthMap::kBits / kAddedSide;
+        const std::size_t row_size = columns / kRepeated, rows = added.size() / row_size;
         std::vector<float> repeated(columns);
         float* value = values.data();
         for (std::size_t y = rows; y-- > 0;) {
-            const float* row = also.data() + y * row_size;
+            const float* row = added.data() + y * row_size;
             for (std::size_t x = 0; x < row_size; ++x)
                 for (std::size_t k = 0; k < kRepeated; ++k) repeated[kRepeated * x + k] = row[x];
             for (std::size_t k = 0; k < kRepeated; ++k, value += columns)
@@ -174,8 +174,8 @@ void BlockChoice::took(std::size_t map_bytes, std::size_t frame_bytes) {
 }
 
 DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
-                      const DepthMapSize& size, std::span<const float> also) {
-    const Samples samples(depth, width, height, size, also);
+                      const DepthMapSize& size, std::span<const float> added) {
+    const Samples samples(depth, width, height, size, added);
     DepthMap map{size.columns, size.rows, static_cast<double>(samples.nearest) / near_distance, {}, {}, {}};
     const std::size_t blocks = size_of(size.columns, size.rows);
     map.near.resize(blocks);

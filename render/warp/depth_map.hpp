@@ -47,11 +47,11 @@ private:
 
 /// `depth` of `width` · `height` pixels, rows from the bottom up, is near_distance / distance along the view,
 /// and 0 at infinity (math::reversed_clip_from_view). Its pixels may be larger or smaller than blocks are.
-/// `also`: the same of what it has not, in kAlso samples a side for each block; the nearer counts. Empty:
+/// `added`: the same of what it has not, in kAddedSide samples a side for each block; the nearer counts. Empty:
 /// none.
 DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
-                      const DepthMapSize& size, std::span<const float> also = {});
-inline constexpr int kAlso = 2;
+                      const DepthMapSize& size, std::span<const float> added = {});
+inline constexpr int kAddedSide = 2;
 
 /// In the format of zlib (RFC 1950): for each block the difference of its `far` from what its neighbours make
 /// expect; a bit for each block, set if an edge goes through it; and of those blocks the difference of `near`

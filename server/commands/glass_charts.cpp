@@ -207,6 +207,48 @@ std::string text_of(double value, int digits) {
     return text;
 }
 
+/// Prints the results as they come, and collects them for files.
+struct Tables {
+    using Line = std::vector<std::string>;
+
+    Tables() {
+        std::printf("%-24s %-16s %-16s %8s %8s %9s %7s %9s %7s\n", "session", "link", "prediction", "mean",
+                    "p95", "frozen ms", "frames", "kB/frame", "depth %");
+    }
+
+    void add(const std::string& session, const std::string& link, const GlassErrors& errors) {
+        for (std::size_t i = 0; i < kPredictions.size(); ++i) {
+            const Spread spread = spread_of(errors.errors.at(i));
+            const GlassErrors::Delivered& delivered = errors.delivered.at(i);
+            std::printf("%-24s %-16s %-16s %8.4f %8.4f %9.0f %7d %9.1f %7.1f\n", session.c_str(),
+                        link.c_str(), kPredictions.at(i), spread.mean, spread.p95, delivered.longest_ms,
+                        delivered.frames, delivered.bytes / std::max(1, delivered.frames) / 1000,
+                        100 * delivered.depth_bytes / std::max(1.0, delivered.bytes));
+            csv += line_of(Line{session, link, kPredictions.at(i), text_of(spread.mean, 6),
+                                text_of(spread.p95, 6), text_of(delivered.longest_ms, 1),
+                                std::to_string(delivered.frames), text_of(delivered.bytes, 0),
+                                text_of(delivered.depth_bytes, 0)}) +
+                   "\n";
+        }
+        for (const LevelAtGlass& level : levels_at_glass(errors)) {
+            std::printf("%-24s %-16s %8.1f ms %6.1f kB %8.4f  %s%s\n", session.c_str(), link.c_str(),
+                        level.ms, level.bytes / 1000, level.error, level.name.c_str(),
+                        level.is_beaten ? " (beaten)" : "");
+            levels_csv +=
+                line_of(Line{session, link, level.name, text_of(level.ms, 3), text_of(level.bytes, 0),
+                             text_of(level.error, 6), level.is_beaten ? "yes" : "no"}) +
+                "\n";
+        }
+        std::fflush(stdout);
+    }
+
+    std::string csv = line_of(Line{"session", "link", "prediction", "mean", "p95", "longest_ms", "frames",
+                                   "bytes", "depth_bytes"}) +
+                      "\n";
+    std::string levels_csv =
+        line_of(Line{"session", "link", "level", "ms", "bytes", "mean", "beaten"}) + "\n";
+};
+
 }  // namespace
 
 void chart_glass(const ChartArguments& arguments) {
@@ -215,17 +257,10 @@ void chart_glass(const ChartArguments& arguments) {
     std::vector<Session> sessions;
     for (const fs::path& file : arguments.sessions) sessions.push_back(session_of(file, arguments));
 
-    std::string csv = measure::line_of({"session", "link", "prediction", "mean", "p95", "longest_ms",
-                                        "frames", "bytes", "depth_bytes"}) +
-                      "\n";
-    std::string levels_csv = measure::line_of(std::vector<std::string>{"session", "link", "level", "ms",
-                                                                       "bytes", "mean", "beaten"}) +
-                             "\n";
+    Tables tables;
     std::vector<Plot> plots;
     std::vector<std::string> slugs;
     std::vector<std::vector<GlassErrors>> all;
-    std::printf("%-24s %-16s %-16s %8s %8s %9s %7s %9s %7s\n", "session", "link", "prediction", "mean", "p95",
-                "frozen ms", "frames", "kB/frame", "depth %");
     for (const Session& session : sessions) {
         const std::vector<GlassErrors> of_links = [&] {
             observe::Progress progress;
@@ -236,45 +271,20 @@ void chart_glass(const ChartArguments& arguments) {
                                    [&](double part) { progress.show(part, session.name); });
         }();
         for (std::size_t l = 0; l < links.size(); ++l) {
-            const SimulatedLink& link = links[l];
-            const GlassErrors& errors = of_links[l];
-            for (std::size_t i = 0; i < kPredictions.size(); ++i) {
-                const Spread spread = spread_of(errors.errors.at(i));
-                const GlassErrors::Delivered& delivered = errors.delivered.at(i);
-                std::printf("%-24s %-16s %-16s %8.4f %8.4f %9.0f %7d %9.1f %7.1f\n", session.name.c_str(),
-                            link.name.c_str(), kPredictions.at(i), spread.mean, spread.p95,
-                            delivered.longest_ms, delivered.frames,
-                            delivered.bytes / std::max(1, delivered.frames) / 1000,
-                            100 * delivered.depth_bytes / std::max(1.0, delivered.bytes));
-                csv += measure::line_of({session.name, link.name, kPredictions.at(i), text_of(spread.mean, 6),
-                                         text_of(spread.p95, 6), text_of(delivered.longest_ms, 1),
-                                         std::to_string(delivered.frames), text_of(delivered.bytes, 0),
-                                         text_of(delivered.depth_bytes, 0)}) +
-                       "\n";
-            }
-            for (const LevelAtGlass& level : levels_at_glass(errors)) {
-                std::printf("%-24s %-16s %8.1f ms %6.1f kB %8.4f  %s%s\n", session.name.c_str(),
-                            link.name.c_str(), level.ms, level.bytes / 1000, level.error, level.name.c_str(),
-                            level.is_beaten ? " (beaten)" : "");
-                levels_csv +=
-                    measure::line_of(std::vector<std::string>{
-                        session.name, link.name, level.name, text_of(level.ms, 3), text_of(level.bytes, 0),
-                        text_of(level.error, 6), level.is_beaten ? "yes" : "no"}) +
-                    "\n";
-            }
-            std::fflush(stdout);
-            plots.push_back(time_plot(session, link, errors, arguments.every,
-                                      slug_of(session.name + " " + link.name, slugs)));
+            tables.add(session.name, links[l].name, of_links[l]);
+            plots.push_back(time_plot(session, links[l], of_links[l], arguments.every,
+                                      slug_of(session.name + " " + links[l].name, slugs)));
         }
         all.push_back(of_links);
     }
     if (arguments.out.empty()) return;
     plots.push_back(links_plot(links, all));
-    write_text(arguments.out / "glass.csv", csv);
+    write_text(arguments.out / "glass.csv", tables.csv);
     if (arguments.each_level) {
-        write_text(arguments.out / "glass-levels.csv", levels_csv);
+        write_text(arguments.out / "glass-levels.csv", tables.levels_csv);
         for (std::size_t l = 0; l < links.size(); ++l) {
             std::vector<GlassErrors> of_link;
+            of_link.reserve(all.size());
             for (const auto& of_links : all) of_link.push_back(of_links[l]);
             plots.push_back(levels_plot(sessions, links[l], of_link, slug_of(links[l].name, slugs)));
         }

@@ -57,8 +57,8 @@ bool Engine::wants_depth() const {
            std::ranges::any_of(clients_, [](const auto& entry) { return entry.second.wanted.depth; });
 }
 
-/// Where the camera is expected to be when a frame that is begun now is shown to who steers; none where that
-/// is where it is. Whoever does not warp frames would see it turn too far and back again.
+/// Where the camera is expected to be when its holder sees a frame that is begun now; none: where it is.
+/// Where anybody does not warp frames, it is drawn where it is, for they would see it sway.
 std::optional<scene::Camera> Engine::camera_ahead(std::size_t level, const PictureSize& size) const {
     const std::optional<Link> link = holders_link();
     const bool all_warp = std::ranges::all_of(clients_, [](const auto& entry) {

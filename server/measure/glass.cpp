@@ -397,7 +397,6 @@ GlassErrors::Delivered counted(const Glass& shown, const std::vector<plan::View>
             if (shown[k]->what.is_moving) {
                 ++result.moving;
                 result.moving_ms += shown[k]->what.ms;
-                result.moving_bytes += static_cast<double>(shown[k]->what.bytes + shown[k]->what.depth_bytes);
             }
         }
         const bool is_right = states[shown[k]->what.drawn] == states[k];
@@ -407,32 +406,56 @@ GlassErrors::Delivered counted(const Glass& shown, const std::vector<plan::View>
     return result;
 }
 
+/// What is on the glass over a link, and what came of it, but for the errors.
+struct OfLink {
+    Glass plain, with_depth;
+    std::vector<Glass> levels;  ///< as GlassErrors::levels
+    GlassErrors result;
+};
+
+OfLink delivered_over(const SimulatedLink& link, const std::vector<plan::View>& states,
+                      const GlassDemand& demand, renderer::Renderer& renderer, engine::JpegEncoder& jpeg) {
+    // Each delivery has a source of its own: what one chooses is nothing to another.
+    const auto deliver = [&](bool has_depth, std::optional<std::size_t> level = {}) {
+        FrameSource source(states, has_depth, renderer, jpeg);
+        return Delivery(states, link, demand.levels, demand.target_ms, source, level).run();
+    };
+    OfLink of{deliver(false), deliver(true), {}, {}};
+    of.result.delivered[0] = of.result.delivered[1] = counted(of.plain, states);
+    of.result.delivered[2] = of.result.delivered[3] = counted(of.with_depth, states);
+    if (!demand.each_level) return of;
+    of.result.levels = levels_of(demand.levels, states.front());
+    for (std::size_t level = 0; level < of.result.levels.size(); ++level)
+        of.levels.push_back(deliver(true, level));
+    return of;
+}
+
+/// Adds the errors of a refresh.
+void add_errors(OfLink& of, const std::vector<plan::View>& states, std::size_t refresh,
+                const Frame& without_delay, const scene::Image& judge) {
+    const plan::View& now = states[refresh];
+    const auto shown = [&](const Glass& glass) {
+        const Frame& frame = *glass[refresh];
+        return Shown{decoded(frame, now), frame.camera};
+    };
+    const Errors errors =
+        errors_of(shown(of.plain), shown(of.with_depth), decoded(without_delay, now), now, judge);
+    for (std::size_t p = 0; p < errors.size(); ++p) of.result.errors[p].push_back(errors[p]);
+    for (std::size_t level = 0; level < of.levels.size(); ++level)
+        of.result.levels[level].errors.push_back(warped_error(shown(of.levels[level]), now, judge));
+}
+
 }  // namespace
 
 std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
                                          const std::vector<SimulatedLink>& links, const GlassDemand& demand,
                                          renderer::Renderer& renderer, const PartDone& done) {
-    // Each link has sources of its own: what one chooses is nothing to another.
     engine::JpegEncoder jpeg;
     std::vector<FrameSource> without_delay(links.size(), FrameSource(states, true, renderer, jpeg));
-    std::vector<Glass> plain, with_depth;
-    std::vector<std::vector<Glass>> of_levels;
-    std::vector<GlassErrors> results;
-    for (const SimulatedLink& link : links) {
-        FrameSource source(states, false, renderer, jpeg), depth_source(states, true, renderer, jpeg);
-        plain.push_back(Delivery(states, link, demand.levels, demand.target_ms, source).run());
-        with_depth.push_back(Delivery(states, link, demand.levels, demand.target_ms, depth_source).run());
-        GlassErrors& result = results.emplace_back();
-        result.delivered[0] = result.delivered[1] = counted(plain.back(), states);
-        result.delivered[2] = result.delivered[3] = counted(with_depth.back(), states);
-        of_levels.emplace_back();
-        if (!demand.each_level) continue;
-        result.levels = levels_of(demand.levels, states.front());
-        for (std::size_t level = 0; level < result.levels.size(); ++level) {
-            FrameSource one(states, true, renderer, jpeg);
-            of_levels.back().push_back(Delivery(states, link, demand.levels, 0, one, level).run());
-        }
-    }
+    std::vector<OfLink> of_links;
+    of_links.reserve(links.size());
+    for (const SimulatedLink& link : links)
+        of_links.push_back(delivered_over(link, states, demand, renderer, jpeg));
     // An image is judged while the next one is drawn.
     std::future<void> judged;
     for (std::size_t k = 0; k < states.size(); k += demand.every) {
@@ -444,25 +467,18 @@ std::vector<GlassErrors> errors_at_glass(const std::vector<plan::View>& states,
         std::vector<Frame> fresh;
         fresh.reserve(links.size());
         for (std::size_t i = 0; i < links.size(); ++i)
-            fresh.push_back(without_delay[i].draw(k, with_depth[i][k]->what.setting));
+            fresh.push_back(without_delay[i].draw(k, of_links[i].with_depth[k]->what.setting));
         if (judged.valid()) judged.get();
         judged = std::async(std::launch::async, [&, k, judge = std::move(job.image), fresh] {
-            const auto shown = [&](const Glass& glass) {
-                const Frame& frame = *glass[k];
-                return Shown{decoded(frame, states[k]), frame.camera};
-            };
-            for (std::size_t i = 0; i < links.size(); ++i) {
-                const Errors errors = errors_of(shown(plain[i]), shown(with_depth[i]),
-                                                decoded(fresh[i], states[k]), states[k], judge);
-                for (std::size_t p = 0; p < errors.size(); ++p) results[i].errors[p].push_back(errors[p]);
-                for (std::size_t level = 0; level < of_levels[i].size(); ++level)
-                    results[i].levels[level].errors.push_back(
-                        warped_error(shown(of_levels[i][level]), states[k], judge));
-            }
+            for (std::size_t i = 0; i < links.size(); ++i)
+                add_errors(of_links[i], states, k, fresh[i], judge);
         });
         if (done) done(static_cast<double>(k + 1) / static_cast<double>(states.size()));
     }
     judged.get();
+    std::vector<GlassErrors> results;
+    results.reserve(links.size());
+    for (OfLink& of : of_links) results.push_back(std::move(of.result));
     return results;
 }
 

@@ -51,7 +51,7 @@ struct GlassErrors {
         double bytes = 0, depth_bytes = 0;       ///< of all of them
         double longest_ms = 0;                   ///< that the same frame was shown while another was due
         int moving = 0;                          ///< of the frames: while things move
-        double moving_ms = 0, moving_bytes = 0;  ///< of all of those; bytes with their depth
+        double moving_ms = 0;                    ///< that all of those took the server
     };
     /// By prediction; errors of each judged refresh.
     std::array<std::vector<double>, kPredictions.size()> errors;

@@ -73,8 +73,8 @@ TEST_CASE("what an image's depth has not counts, too, where it is nearer") {
     const auto size = depth_map_size(kWidth, kHeight, 4);
     const std::vector<float> wall = depth_of(kWidth, kHeight, [](int, int) { return 0.5; });
     // A pane before the left half, whose lower half is behind the wall.
-    std::vector<float> pane(static_cast<std::size_t>(kAlso * size.columns * kAlso * size.rows), 0);
-    const int columns = kAlso * size.columns, rows = kAlso * size.rows;
+    std::vector<float> pane(static_cast<std::size_t>(kAddedSide * size.columns * kAddedSide * size.rows), 0);
+    const int columns = kAddedSide * size.columns, rows = kAddedSide * size.rows;
     for (int y = 0; y < rows; ++y)  // from the bottom up
         for (int x = 0; x < columns / 2; ++x)
             pane[static_cast<std::size_t>(y * columns + x)] = y < rows / 2 ? 0.01F : 0.4F;

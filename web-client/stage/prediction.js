@@ -160,7 +160,7 @@ export class Prediction {
     }
   }
 
-  /** Where a message leads; `gestures` take it, and it takes what it touches. @param {Gestures} gestures @returns {Camera} */
+  /** Where a message leads, which learns what it touches; `gestures` take it. @param {Gestures} gestures @returns {Camera} */
   #applied(gestures, message, camera) {
     const context = {
       ...this.#context(),

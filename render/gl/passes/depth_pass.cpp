@@ -21,7 +21,6 @@ const std::vector<float>& DepthPass::read(const plan::DrawLists& lists, GpuScene
     set_scissor({});
     PipelineState state;
     apply(state);
-    glClearDepth(0);
     glClear(GL_DEPTH_BUFFER_BIT);
     state.color_write = false;
     SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);

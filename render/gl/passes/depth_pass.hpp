@@ -11,13 +11,13 @@
 
 namespace vrut::gl {
 
-/// The depth of transparent items, which the depth of an image has not: but for clear ones.
+/// The depth of transparent items, which the depth of an image has not. Clear ones do not count.
 class DepthPass {
 public:
     explicit DepthPass(Programs& programs) : programs_(programs) {}
     /// Returns `width` · `height` samples, at the middle of equal parts of the image, rows from the bottom
-    /// up: what is nearest there, opaque or not in front of it or behind it, and 0 where nothing is. They
-    /// stay until the next call.
+    /// up: the nearest of them there, even behind what is opaque; 0 where there is none. They stay until the
+    /// next call.
     const std::vector<float>& read(const plan::DrawLists& lists, GpuScene& scene,
                                    const glm::dmat4& clip_from_view, int width, int height);
 
