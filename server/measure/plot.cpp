@@ -179,6 +179,12 @@ void write_series(std::ostream& out, const Plot& plot) {
     out << '\n';
 }
 
+/// Of two titles each: more rows take room below the picture.
+int legend_rows(const Plot& plot) {
+    const auto has_title = [](const Series& series) { return !series.title.empty(); };
+    return static_cast<int>(std::ranges::count_if(plot.series, has_title) + 1) / 2;
+}
+
 }  // namespace
 
 std::string quoted(const std::string& text) {
@@ -211,8 +217,9 @@ std::string script_of(const Plot& plot, const std::filesystem::path& output) {
            "set grid xtics ytics lc rgb '#e4e4e4' lw 0.7\n"
            "set errorbars 0.4\n"
            "set key at screen 0.5,0.02 center bottom horizontal Left reverse samplen 1.2 width -1\n"
-           "set lmargin 11\nset rmargin 4\nset bmargin 6.8\nset tmargin 4.5\n"
-        << "set xrange [" << (plot.linear_x ? 0 : frame.x.low) << ':' << frame.x.high << "]\n"
+           "set lmargin 11\nset rmargin 4\nset tmargin 4.5\nset bmargin "
+        << 6.8 + 1.4 * static_cast<double>(std::max(legend_rows(plot), 3) - 3) << "\nset xrange ["
+        << (plot.linear_x ? 0 : frame.x.low) << ':' << frame.x.high << "]\n"
         << "set yrange [" << frame.y.low << ':' << frame.y.high << "]\n";
     // Within a decade or two, its tenths have no tics of their own: these do.
     for (const auto& [axis, range] : {std::pair("x", frame.x), std::pair("y", frame.y)}) {
