@@ -144,9 +144,10 @@ void Renderer::Impl::read_depth(plan::RenderJob& job, const gl::Framebuffer& tar
     target.read_depth(depth);
     std::span<const float> transparent;
     if (scene)
-        transparent = depths.read(job.planner->plan().scene, *scene,
-                                  math::reversed_clip_from_view(plan::projection_of(job.view), near),
-                                  warp::kAddedSide * job.depth_size.columns, warp::kAddedSide * job.depth_size.rows);
+        transparent =
+            depths.read(job.planner->plan().scene, *scene,
+                        math::reversed_clip_from_view(plan::projection_of(job.view), near),
+                        warp::kAddedSide * job.depth_size.columns, warp::kAddedSide * job.depth_size.rows);
     job.depth = warp::depth_map_of(depth, target.width(), target.height(), near, job.depth_size, transparent);
     job.stats.readback_ms += milliseconds_since(start);
 }

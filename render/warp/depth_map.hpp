@@ -47,8 +47,8 @@ private:
 
 /// `depth` of `width` · `height` pixels, rows from the bottom up, is near_distance / distance along the view,
 /// and 0 at infinity (math::reversed_clip_from_view). Its pixels may be larger or smaller than blocks are.
-/// `added`: the same of what it has not, in kAddedSide samples a side for each block; the nearer counts. Empty:
-/// none.
+/// `added`: the same of what it has not, in kAddedSide samples a side for each block; the nearer counts.
+/// Empty: none.
 DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
                       const DepthMapSize& size, std::span<const float> added = {});
 inline constexpr int kAddedSide = 2;

@@ -47,11 +47,11 @@ struct ShownFrame {
 /// without delay would show then, with every triangle and kGlassSamples samples a pixel.
 struct GlassErrors {
     struct Delivered {
-        int frames = 0;                          ///< that were shown
-        double bytes = 0, depth_bytes = 0;       ///< of all of them
-        double longest_ms = 0;                   ///< that the same frame was shown while another was due
-        int moving = 0;                          ///< of the frames: while things move
-        double moving_ms = 0;                    ///< that all of those took the server
+        int frames = 0;                     ///< that were shown
+        double bytes = 0, depth_bytes = 0;  ///< of all of them
+        double longest_ms = 0;              ///< that the same frame was shown while another was due
+        int moving = 0;                     ///< of the frames: while things move
+        double moving_ms = 0;               ///< that all of those took the server
     };
     /// By prediction; errors of each judged refresh.
     std::array<std::vector<double>, kPredictions.size()> errors;
