@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/camera.hpp"
+#include "scene/clip_plane.hpp"
 #include "scene/light.hpp"
 #include "scene/scene.hpp"
 #include "scene/style.hpp"
@@ -82,6 +83,7 @@ struct View {
     /// The node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
     scene::Index selected = scene::kNone;
     Background background;
+    std::vector<scene::ClipPlane> clip_planes;                 ///< up to kMostClipPlanes
     std::shared_ptr<const std::vector<PlacedMarker>> markers;  ///< null: none; views are equal by its address
 
     bool operator==(const View&) const = default;

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+
+#include "scene/scene.hpp"
+
+namespace vrut::scene {
+
+/// A plane that cuts the scene open, in world space: points p with dot(normal, p) > distance are not shown.
+struct ClipPlane {
+    glm::dvec3 normal{0, 0, 1};  ///< unit
+    double distance = 0;         ///< of the plane from the world's origin, along the normal
+    /// Watertight parts are closed where it cuts them, by a cap: a face of cap_material().
+    bool caps = true;
+    bool hatched = false;  ///< its caps
+
+    bool operator==(const ClipPlane&) const = default;
+};
+
+/// Six of a list, and the six of a box.
+inline constexpr std::size_t kMostClipPlanes = 12;
+
+/// The plane in the space of a node: points are shown where the dot product with (point, 1) is not negative.
+/// Its length depends on the matrix.
+glm::dvec4 clip_equation(const ClipPlane& plane, const glm::dmat4& world_from_node);
+
+/// What planes leave of a ray.
+struct KeptInterval {
+    double first = 0, last = 0;      ///< distances along the ray, from 0 to infinity
+    std::optional<std::size_t> cap;  ///< the plane at `first`; none where the ray's origin is shown
+};
+/// `direction` is unit. None where nothing is left of the ray.
+std::optional<KeptInterval> kept_interval(std::span<const ClipPlane> planes, const glm::dvec3& origin,
+                                          const glm::dvec3& direction);
+
+/// Of a part's cap: its colours by Phong's equation, without what lies on its surface: textures, highlights,
+/// reflections, transparency.
+Material cap_material(const Material& material);
+
+}  // namespace vrut::scene
