@@ -31,9 +31,6 @@ StageFiles files_of(FixedProgram program) {
             return {"screen.vert", "composite_lists.frag"};
         case FixedProgram::marker:
             return {"marker.vert", "marker.frag"};
-        case FixedProgram::node_id:
-        case FixedProgram::node_id_double_single:
-            return {"solid_color.vert", "node_id.frag"};
         case FixedProgram::outline:
             return {"screen.vert", "outline.frag"};
         case FixedProgram::resolve_planes:
@@ -41,38 +38,36 @@ StageFiles files_of(FixedProgram program) {
         case FixedProgram::resolve_rgba:
             return {"screen.vert", "resolve_rgba.frag"};
         case FixedProgram::row_distance:
-            return {"screen.vert", "row_distance.frag"};
-        case FixedProgram::solid_color:
-        case FixedProgram::solid_color_double_single:
             break;
     }
-    return {"solid_color.vert", "solid_color.frag"};
+    return {"screen.vert", "row_distance.frag"};
 }
 
-bool is_double_single(FixedProgram program) {
-    return program == FixedProgram::node_id_double_single ||
-           program == FixedProgram::solid_color_double_single;
+/// One plane is what a mirror takes, or one section. The last is for all of a view's planes and a mirror's.
+constexpr std::array<int, 4> kClipCapacities{0, 1, 8, scene::kMostClipPlanes + 1};
+/// What shaders know them by.
+std::string_view clip_define(int capacity) {
+    return capacity == 1 ? "CLIPPED 1" : capacity == 8 ? "CLIPPED 8" : "CLIPPED 13";
 }
+static_assert(kClipCapacities.back() == 13);
 
 /// Edges take the colour of their material alone. A planar mirror shows the scene, not the environment, and
-/// no mirror shows another; what it shows may be clipped, and lies beside the eye that carries the headlight.
+/// no mirror shows another. An instance has one clip plane at most.
 /// Metal and roughness need an environment, and are lit at pixels, as what a normal map bends.
 bool is_reachable(const SurfaceVariant& variant) {
     const bool varied = variant.metallic_roughness || variant.mapped;
-    if (variant.kind == Kind::edges && (variant.textured || variant.colored || variant.emissive || varied ||
-                                        variant.environment || variant.clipped))
+    if (variant.kind == Kind::edges &&
+        (variant.textured || variant.colored || variant.emissive || varied || variant.environment))
         return false;
-    if (variant.kind == Kind::mirror &&
-        (variant.clipped || (variant.environment && !variant.metallic_roughness)))
-        return false;
+    if (variant.kind == Kind::mirror && variant.environment && !variant.metallic_roughness) return false;
     if (variant.anisotropic && !(variant.textured || variant.mapped)) return false;
     if (variant.metallic_roughness && !variant.environment) return false;
     if (variant.coated && !variant.metallic_roughness) return false;
     if (varied && variant.lit_at != plan::Methods::Lighting::pixel) return false;
     if (variant.instanced && (variant.kind != Kind::faces || variant.double_single || variant.colored ||
-                              variant.emissive || variant.mapped))
+                              variant.emissive || variant.mapped || variant.clip_planes > 1))
         return false;
-    return !(variant.clipped && variant.light == Light::headlight);
+    return true;
 }
 
 bool has_double_single(const scene::Scene& scene) {
@@ -145,7 +140,10 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     if (variant.textured && !(textured && features.texcoords)) return false;
     if (variant.environment && !((reflective || variant.metallic_roughness) && features.environment_map))
         return false;
-    return !variant.clipped || features.mirrors();
+    // A mirror clips what it shows, which lies beside the eye that carries the headlight.
+    if (variant.clip_planes == 0) return true;
+    return variant.clip_planes == 1 && features.mirrors() && variant.light != Light::headlight &&
+           variant.kind != Kind::edges && variant.kind != Kind::mirror;
 }
 
 GlProgram compile(const ProgramSource& source) { return make_program(source.vertex, source.fragment); }
@@ -164,29 +162,43 @@ SurfaceVariant::Light light_kind(scene::LightData::Type type) {
     return Light::point;
 }
 
+int clip_capacity(std::size_t planes) {
+    return *std::ranges::find_if(kClipCapacities,
+                                 [&](int capacity) { return static_cast<std::size_t>(capacity) >= planes; });
+}
+
+std::vector<PlainVariant> reachable_plain_variants() {
+    std::vector<PlainVariant> variants;
+    for (const PlainVariant::Output output : {PlainVariant::Output::color, PlainVariant::Output::node_id})
+        for (const bool double_single : {false, true})
+            for (const int planes : kClipCapacities) variants.push_back({output, double_single, planes});
+    return variants;
+}
+
 std::vector<SurfaceVariant> reachable_surface_variants() {
     using Lighting = plan::Methods::Lighting;
     std::vector<SurfaceVariant> variants;
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 2048; ++bits) {
-                    const SurfaceVariant variant{kind,
-                                                 light,
-                                                 (bits & 1) != 0,
-                                                 (bits & 2) != 0,
-                                                 (bits & 4) != 0,
-                                                 lit_at,
-                                                 (bits & 8) != 0,
-                                                 (bits & 16) != 0,
-                                                 (bits & 32) != 0,
-                                                 (bits & 64) != 0,
-                                                 (bits & 128) != 0,
-                                                 (bits & 256) != 0,
-                                                 (bits & 512) != 0,
-                                                 (bits & 1024) != 0};
-                    if (is_reachable(variant)) variants.push_back(variant);
-                }
+                for (const int clip_planes : kClipCapacities)
+                    for (int bits = 0; bits < 1024; ++bits) {
+                        const SurfaceVariant variant{kind,
+                                                     light,
+                                                     (bits & 1) != 0,
+                                                     (bits & 2) != 0,
+                                                     clip_planes,
+                                                     lit_at,
+                                                     (bits & 4) != 0,
+                                                     (bits & 8) != 0,
+                                                     (bits & 16) != 0,
+                                                     (bits & 32) != 0,
+                                                     (bits & 64) != 0,
+                                                     (bits & 128) != 0,
+                                                     (bits & 256) != 0,
+                                                     (bits & 512) != 0};
+                        if (is_reachable(variant)) variants.push_back(variant);
+                    }
     return variants;
 }
 
@@ -205,9 +217,16 @@ std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const pl
 
 ProgramSource source_of(FixedProgram program) {
     const StageFiles files = files_of(program);
+    return {shader_source(files.vertex), shader_source(files.fragment)};
+}
+
+ProgramSource source_of(const PlainVariant& variant) {
     std::vector<std::string_view> defines;
-    if (is_double_single(program)) defines.push_back("DOUBLE_SINGLE");
-    return {shader_source(files.vertex, defines), shader_source(files.fragment)};
+    if (variant.double_single) defines.push_back("DOUBLE_SINGLE");
+    if (variant.clip_planes > 0) defines.push_back(clip_define(variant.clip_planes));
+    const bool color = variant.output == PlainVariant::Output::color;
+    return {shader_source("solid_color.vert", defines),
+            shader_source(color ? "solid_color.frag" : "node_id.frag", defines)};
 }
 
 ProgramSource source_of(const SurfaceVariant& variant) {
@@ -229,7 +248,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass, "GLASS");
     define(variant.kind == Kind::per_pixel_glass, "LAYERED");
     define(variant.kind == Kind::mirror, "MIRROR");
-    define(variant.clipped, "CLIPPED");
+    define(variant.clip_planes > 0, clip_define(variant.clip_planes));
     define(variant.double_single, "DOUBLE_SINGLE");
     define(variant.anisotropic, "ANISOTROPIC");
     const bool at_vertex = variant.lit_at == plan::Methods::Lighting::vertex;
@@ -242,6 +261,15 @@ const GlProgram& Programs::at(FixedProgram program) {
     GlProgram& compiled = fixed_[static_cast<std::size_t>(program)];
     if (!compiled) {
         compiled = compile(source_of(program));
+        ++compiled_;
+    }
+    return compiled;
+}
+
+const GlProgram& Programs::at(const PlainVariant& variant) {
+    GlProgram& compiled = plain_[variant];
+    if (!compiled) {
+        compiled = compile(source_of(variant));
         ++compiled_;
     }
     return compiled;
@@ -261,9 +289,13 @@ bool Programs::is_compiled(FixedProgram program) const {
     return bool(fixed_[static_cast<std::size_t>(program)]);
 }
 
+bool Programs::is_compiled(const PlainVariant& variant) const { return plain_.contains(variant); }
+
 bool Programs::is_compiled(const SurfaceVariant& variant) const { return surfaces_.contains(variant); }
 
 void Programs::use(FixedProgram program) { glUseProgram(at(program).get()); }
+
+void Programs::use(const PlainVariant& variant) { glUseProgram(at(variant).get()); }
 
 void Programs::use(const SurfaceVariant& variant) { glUseProgram(at(variant).get()); }
 
@@ -278,10 +310,11 @@ bool Programs::compile_step(const scene::Scene& scene, const plan::Methods& meth
         return true;
     };
     const bool double_single = has_double_single(scene);
-    for (std::size_t i = 0; i < kFixedPrograms; ++i) {
-        const auto program = static_cast<FixedProgram>(i);
-        if ((double_single || !is_double_single(program)) && !compile_next(program)) return false;
-    }
+    for (std::size_t i = 0; i < kFixedPrograms; ++i)
+        if (!compile_next(static_cast<FixedProgram>(i))) return false;
+    for (const PlainVariant& variant : reachable_plain_variants())
+        if (variant.clip_planes == 0 && variant.double_single <= double_single && !compile_next(variant))
+            return false;
     return std::ranges::all_of(surface_variants(scene, methods), compile_next);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <map>
 #include <string>
 #include <string_view>
@@ -21,16 +22,28 @@ enum class FixedProgram {
     background_image,
     composite_lists,
     marker,
-    node_id,
-    node_id_double_single,
     outline,
     resolve_planes,
     resolve_rgba,
     row_distance,
-    solid_color,
-    solid_color_double_single,
 };
-inline constexpr std::size_t kFixedPrograms = 13;
+inline constexpr std::size_t kFixedPrograms = 9;
+
+/// How many clip planes a program has for an item with so many. The programs are few: unused planes keep all.
+int clip_capacity(std::size_t planes);
+
+/// Draws geometries without light.
+struct PlainVariant {
+    enum class Output {
+        color,    ///< one everywhere
+        node_id,  ///< the number of a node everywhere, into a target of integers
+    };
+    Output output = Output::color;
+    bool double_single = false;  ///< GpuGeometry::is_double_single()
+    int clip_planes = 0;         ///< clip_capacity()
+
+    auto operator<=>(const PlainVariant&) const = default;
+};
 
 /// What a surface and the light ask of the program that shades it. Each variant is a program of its own.
 struct SurfaceVariant {
@@ -47,7 +60,7 @@ struct SurfaceVariant {
     Light light = Light::headlight;
     bool textured = false;
     bool environment = false;  ///< reflects the environment map
-    bool clipped = false;      ///< by a plane
+    int clip_planes = 0;       ///< clip_capacity()
     plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
     bool double_single = false;  ///< GpuGeometry::is_double_single()
     bool anisotropic = false;    ///< filter of its texture
@@ -61,9 +74,9 @@ struct SurfaceVariant {
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
-            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
-                            v.anisotropic, v.instanced, v.colored, v.emissive, v.metallic_roughness, v.mapped,
-                            v.coated);
+            return std::tie(v.kind, v.light, v.textured, v.environment, v.clip_planes, v.lit_at,
+                            v.double_single, v.anisotropic, v.instanced, v.colored, v.emissive,
+                            v.metallic_roughness, v.mapped, v.coated);
         };
         return key(*this) < key(other);
     }
@@ -72,10 +85,11 @@ struct SurfaceVariant {
 SurfaceVariant::Light light_kind(scene::LightData::Type type);
 
 /// Those that some view of some scene needs.
+std::vector<PlainVariant> reachable_plain_variants();
 std::vector<SurfaceVariant> reachable_surface_variants();
 
-/// Those that views of a scene may need: in every drawing mode, with each of its materials on any node, each
-/// of its lights or none, and its environment map or none.
+/// Those that views of a scene without View::clip_planes may need: in every drawing mode, with each of its
+/// materials on any node, each of its lights or none, and its environment map or none.
 std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const plan::Methods& methods);
 
 /// GLSL, with its version and all that it includes and defines.
@@ -83,6 +97,7 @@ struct ProgramSource {
     std::string vertex, fragment;
 };
 ProgramSource source_of(FixedProgram program);
+ProgramSource source_of(const PlainVariant& variant);
 ProgramSource source_of(const SurfaceVariant& variant);
 
 /// The programs of a context, for all passes: each is compiled when it is first used, if not before.
@@ -90,6 +105,7 @@ class Programs {
 public:
     /// Makes it the current one.
     void use(FixedProgram program);
+    void use(const PlainVariant& variant);
     void use(const SurfaceVariant& variant);
     /// Compiles what views of a scene may need until `budget` is spent: each program spends
     /// DrawBudget::kMostUpload. Returns true when all are compiled.
@@ -100,10 +116,13 @@ public:
 private:
     bool is_compiled(FixedProgram program) const;
     bool is_compiled(const SurfaceVariant& variant) const;
+    bool is_compiled(const PlainVariant& variant) const;
     const GlProgram& at(FixedProgram program);
+    const GlProgram& at(const PlainVariant& variant);
     const GlProgram& at(const SurfaceVariant& variant);
 
     std::array<GlProgram, kFixedPrograms> fixed_;
+    std::map<PlainVariant, GlProgram> plain_;
     std::map<SurfaceVariant, GlProgram> surfaces_;
     int compiled_ = 0;
 };

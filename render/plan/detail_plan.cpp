@@ -119,7 +119,7 @@ bool is_beyond_near_plane(const math::Bounds& in_view, const View& view) {
 void cull_backfaces(DrawLists& lists, const View& view) {
     const scene::Scene& scene = *view.scene->scene;
     for (DrawItem& item : lists.opaque)
-        if (item.cull_mode == CullMode::none && !item.clip_plane &&
+        if (item.cull_mode == CullMode::none && item.clip_planes.empty() &&
             view.levels->known_watertight(item.geometry) && !is_flattened(item.view_from_node) &&
             is_beyond_near_plane(
                 transformed(item.view_from_node,

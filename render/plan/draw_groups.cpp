@@ -127,7 +127,7 @@ bool share_draw(const DrawItem& a, const DrawItem& b) {
            a.metallic_roughness == b.metallic_roughness && a.coated == b.coated && !is_mapped(a) &&
            !is_mapped(b) && a.environment == b.environment &&
            (a.cull_mode == CullMode::none) == (b.cull_mode == CullMode::none) &&
-           a.clip_plane.has_value() == b.clip_plane.has_value();
+           a.clip_planes.size() == b.clip_planes.size() && a.clip_planes.size() <= 1;
 }
 
 void group_for_draws(std::vector<DrawItem>& items, const scene::PlacedScene& placed, const glm::dvec3& eye) {

@@ -36,8 +36,8 @@ struct DrawItem {
     bool environment = false;  ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;
-    /// Clip plane in node space: only points with a non-negative dot product are drawn.
-    std::optional<glm::dvec4> clip_plane;
+    /// In node space: only points whose dot products with all of them are not negative are drawn.
+    std::vector<glm::dvec4> clip_planes;
     /// The triangles back to front, numbered as in TriangleOrder; null: in file order.
     std::shared_ptr<const std::vector<unsigned>> order;
     /// The view's level of detail to draw; null: every triangle.

@@ -151,7 +151,7 @@ std::optional<DrawItem> reflected(const DrawItem& item, const scene::Scene& scen
     image.mirrored = !item.mirrored;
     if (middle - reach < margin) {
         distance.w -= margin;
-        image.clip_plane = distance;
+        image.clip_planes.push_back(distance);
     }
     return image;
 }

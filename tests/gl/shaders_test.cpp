@@ -121,9 +121,16 @@ int main(int, char** arguments) {
         used.insert({source.vertex, source.fragment});
         validator.add(source);
     }
-    // The light changes nothing between the stages, and every combination has a point light.
-    for (const gl::SurfaceVariant& variant : gl::reachable_surface_variants())
-        validator.add(gl::source_of(variant), variant.light == gl::SurfaceVariant::Light::point);
+    for (const gl::PlainVariant& variant : gl::reachable_plain_variants()) {
+        const gl::ProgramSource source = gl::source_of(variant);
+        used.insert({source.vertex, source.fragment});
+        validator.add(source);
+    }
+    // The light changes nothing between the stages, nor what clips; every combination has a point light.
+    for (const gl::SurfaceVariant& variant : gl::reachable_surface_variants()) {
+        const bool point = variant.light == gl::SurfaceVariant::Light::point;
+        if (point || variant.clip_planes <= 1) validator.add(gl::source_of(variant), point);
+    }
     validator.add({gl::shader_source("check_drawing.vert"), gl::shader_source("check_drawing.frag")});
     int failed = !validator.compile();
     if (failed == 0) failed = validator.failed_links();

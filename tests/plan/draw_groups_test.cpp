@@ -98,5 +98,5 @@ TEST_CASE("what one draw call can draw") {
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.normal_texture = 0; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.occlusion_roughness_metallic_texture = 0; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.environment = true; }));
-    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.clip_plane = {0, 0, 1, 0}; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.clip_planes = {{0, 0, 1, 0}}; }));
 }

@@ -41,8 +41,8 @@ TEST_CASE("what a mirror cannot show is not drawn for it") {
         return plan.scene.mirrors[0].reflected.opaque;
     };
     CHECK(reflected({0, 0.5, 0}).size() == 1);
-    CHECK_FALSE(reflected({0, 0.5, 0})[0].clip_plane);
-    CHECK(reflected({0, 0.1, 0})[0].clip_plane);
+    CHECK(reflected({0, 0.5, 0})[0].clip_planes.empty());
+    CHECK(reflected({0, 0.1, 0})[0].clip_planes.size() == 1);
     CHECK(reflected({0, -0.5, 0}).empty());
     CHECK(reflected({0, 0.5, 9}).empty());  // behind the eye, where the floor does not show it
     CHECK(reflected({9, 0.5, 0}).empty());

@@ -23,7 +23,7 @@ const std::vector<float>& DepthPass::read(const plan::DrawLists& lists, GpuScene
     apply(state);
     glClear(GL_DEPTH_BUFFER_BIT);
     state.color_write = false;
-    SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);
+    PlainProgram program(programs_, glm::dvec3(0), clip_from_view);
     plan::FrameStats not_counted;
     for (const plan::TransparentGroup& group : lists.transparent)
         for (const plan::DrawItem& item : group.items) {

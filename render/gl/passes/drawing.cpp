@@ -9,6 +9,10 @@ namespace vrut::gl {
 
 namespace {
 
+/// Of the context that is current on this thread since set_constant_state(). Few items are clipped: setting
+/// all of them for each would take longer than the rest of the state.
+thread_local int enabled_clip_distances = 0;
+
 void enable(GLenum capability, bool enabled) { enabled ? glEnable(capability) : glDisable(capability); }
 
 void count_draw(GLsizei indices, plan::FrameStats& stats) {
@@ -22,7 +26,7 @@ PipelineState PipelineState::for_item(const plan::DrawItem& item, bool front_onl
     PipelineState state = *this;
     state.cull_back = item.cull_mode != plan::CullMode::none || front_only;
     state.clockwise_front = item.mirrored;
-    state.clipped = item.clip_plane.has_value();
+    state.clip_distances = std::min(static_cast<int>(item.clip_planes.size()), kMostClipDistances);
     return state;
 }
 
@@ -39,12 +43,17 @@ void apply(const PipelineState& state) {
     enable(GL_CULL_FACE, state.cull_back);
     glFrontFace(state.clockwise_front ? GL_CW : GL_CCW);
     enable(GL_POLYGON_OFFSET_FILL, state.behind_edges);
-    enable(GL_CLIP_DISTANCE0, state.clipped);
+    for (; enabled_clip_distances < state.clip_distances; ++enabled_clip_distances)
+        glEnable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(enabled_clip_distances));
+    for (; enabled_clip_distances > state.clip_distances; --enabled_clip_distances)
+        glDisable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(enabled_clip_distances - 1));
 }
 
 void set_constant_state() {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glClearDepth(0);
+    for (int i = 0; i < kMostClipDistances; ++i) glDisable(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
+    enabled_clip_distances = 0;
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     glDisable(GL_DITHER);
     glCullFace(GL_BACK);

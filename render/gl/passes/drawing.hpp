@@ -10,6 +10,9 @@
 
 namespace vrut::gl {
 
+/// As many as every driver has. Fragments are discarded by further planes.
+inline constexpr int kMostClipDistances = 8;
+
 /// How fragments come to be and what becomes of them: all of it, so that a pass that declares it depends on
 /// nothing that was drawn, or failed, before.
 struct PipelineState {
@@ -28,7 +31,7 @@ struct PipelineState {
     bool cull_back = false;
     bool clockwise_front = false;
     bool behind_edges = false;  ///< polygon offset: edges on these faces pass the depth test
-    bool clipped = false;       ///< by the plane of the program
+    int clip_distances = 0;     ///< that the program's vertices write
 
     /// The same, with the sides of an item that show; `front_only`: of a two-sided one, too.
     PipelineState for_item(const plan::DrawItem& item, bool front_only = false) const;
@@ -37,7 +40,7 @@ struct PipelineState {
 /// Makes it that of the context.
 void apply(const PipelineState& state);
 
-/// What no pass changes.
+/// What no pass changes. Begins all drawing on a thread.
 void set_constant_state();
 
 /// Nothing outside the box is drawn or cleared; none: everything is.

@@ -22,7 +22,7 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, cons
                     const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats) {
     PipelineState state;
     state.depth_write = !style.edge_color;  // of one colour, none hides another
-    std::optional<SolidColorProgram> solid;
+    std::optional<PlainProgram> solid;
     if (style.edge_color) solid.emplace(programs_, *style.edge_color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuEdges* edges = scene.edges(item.geometry);
@@ -48,7 +48,7 @@ void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& sce
     PipelineState state;
     state.depth_test = false;
     apply(state);
-    SolidColorProgram program(programs_, color, clip_from_view);
+    PlainProgram program(programs_, color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuEdges* edges = scene.edges(item.geometry);
         stats.substitutes += edges == nullptr;

@@ -37,7 +37,7 @@ std::vector<scene::Index> IdPass::draw(std::span<const plan::DrawItem> items, Gp
     apply(state);
     glClearBufferiv(GL_COLOR, 0, &scene::kNone);
     glClear(GL_DEPTH_BUFFER_BIT);
-    NodeIdProgram program(programs_, clip_from_view);
+    PlainProgram program(programs_, {}, clip_from_view);
     plan::FrameStats stats;
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);

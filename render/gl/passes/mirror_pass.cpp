@@ -7,7 +7,7 @@ namespace vrut::gl {
 void MirrorPass::query(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
                        const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
-    SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);
+    PlainProgram program(programs_, glm::dvec3(0), clip_from_view);
     PipelineState state;
     state.depth_write = false;
     state.color_write = false;
@@ -48,7 +48,7 @@ void MirrorPass::open(const plan::MirrorItem& mirror, GpuScene& scene, const glm
     constexpr GLfloat kNearest = 1;
     glClearBufferfv(GL_DEPTH, 0, &kNearest);
     const GpuGeometry& geometry = scene.geometry(mirror.surface);
-    SolidColorProgram(programs_, background, clip_from_view).use(mirror.surface, geometry);
+    PlainProgram(programs_, background, clip_from_view).use(mirror.surface, geometry);
     draw_triangles(geometry, stats);
 }
 

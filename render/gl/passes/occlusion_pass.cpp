@@ -53,7 +53,7 @@ void OcclusionPass::begin_query() {
 
 void OcclusionPass::query(std::span<const plan::OcclusionBox> boxes, const glm::dmat4& clip_from_view) {
     if (!cube_.buffers) cube_ = make_cube();
-    SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);
+    PlainProgram program(programs_, glm::dvec3(0), clip_from_view);
     plan::DrawItem item;
     apply(only_tested(GL_GEQUAL).for_item(item));
     plan::FrameStats not_counted;
@@ -71,7 +71,7 @@ void OcclusionPass::draw_revealed(std::span<const plan::DrawItem> items, GpuScen
                                   plan::FrameStats& stats) {
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        SolidColorProgram(programs_, glm::dvec3(0), clip_from_view).use(item, geometry);
+        PlainProgram(programs_, glm::dvec3(0), clip_from_view).use(item, geometry);
         apply(only_tested(GL_EQUAL).for_item(item));
         begin_query();
         draw_triangles(geometry, stats);

@@ -17,7 +17,7 @@ void OpaquePass::reset_depth(std::span<const plan::DrawItem> items, GpuScene& sc
     state.depth_func = GL_ALWAYS;
     state.farthest = true;
     state.color_write = false;
-    SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);
+    PlainProgram program(programs_, glm::dvec3(0), clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         program.use(item, geometry);

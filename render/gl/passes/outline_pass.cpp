@@ -85,7 +85,7 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
     apply(over_everything());
     set_scissor(box_);
     glClearColor(1, 1, 1, 1);
-    SolidColorProgram program(programs_, glm::dvec3(1), clip_from_view);
+    PlainProgram program(programs_, glm::dvec3(1), clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         program.use(item, geometry);

@@ -28,11 +28,11 @@ enum SurfaceUniform : GLint {
     reflectivity_at = 10,
     alpha_at = 11,
     first_triangle_at = 12,
-    clip_plane_at = 13,
     origin_at = 14,
     ambient_at = 15,
     emissive_at = 16,
     normal_scale_at = 17,
+    clip_planes_at = 20,
 };
 
 constexpr GLuint kViewUniformsBinding = 0;
@@ -132,10 +132,21 @@ void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
     if (geometry.is_double_single()) set(origin_at, origin);
 }
 
-/// Of an item that has one.
-glm::vec4 clip_plane_of(const plan::DrawItem& item, const GpuGeometry& geometry) {
+/// Relative to local_position().
+glm::vec4 in_local_space(const glm::dvec4& clip_plane, const plan::DrawItem& item,
+                         const GpuGeometry& geometry) {
     const glm::dvec3 origin = geometry.origin + glm::dvec3(local_origin(item, geometry));
-    return {glm::dvec3(*item.clip_plane), glm::dot(*item.clip_plane, glm::dvec4(origin, 1))};
+    return {glm::dvec3(clip_plane), glm::dot(clip_plane, glm::dvec4(origin, 1))};
+}
+
+/// Of the current program, which has room for clip_capacity() of them.
+void set_clip_planes(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    if (item.clip_planes.empty()) return;
+    std::vector<glm::vec4> planes;
+    planes.reserve(scene::kMostClipPlanes + 1);
+    for (const glm::dvec4& plane : item.clip_planes) planes.push_back(in_local_space(plane, item, geometry));
+    planes.resize(static_cast<std::size_t>(clip_capacity(planes.size())), glm::vec4(0, 0, 0, 1));
+    glUniform4fv(clip_planes_at, static_cast<GLsizei>(planes.size()), glm::value_ptr(planes[0]));
 }
 
 bool is_two_sided(const plan::DrawItem& item) { return item.cull_mode != plan::CullMode::back; }
@@ -167,7 +178,8 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
 SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawItem& item,
                                            const GpuGeometry& geometry) const {
     const bool textured = item.texture != scene::kNone;
-    SurfaceVariant variant{kind, light_, textured, reflects_environment(item), item.clip_plane.has_value()};
+    SurfaceVariant variant{kind, light_, textured, reflects_environment(item),
+                           clip_capacity(item.clip_planes.size())};
     variant.colored = item.colored;
     variant.emissive = item.emissive;
     variant.metallic_roughness = item.metallic_roughness;
@@ -241,7 +253,7 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
         const bool has_normals = item.normal_texture != scene::kNone;
         glUniform1f(normal_scale_at, has_normals ? static_cast<float>(material.normal_scale) : 0.0F);
     }
-    if (item.clip_plane) glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane_of(item, geometry)));
+    set_clip_planes(item, geometry);
 }
 
 /// Returns false if all of the item's triangles would be culled.
@@ -266,7 +278,7 @@ void SurfacePrograms::add_instance(const plan::DrawItem& item, const GpuGeometry
     instance.base_sides = {base_of(material), is_two_sided(item) ? 1 : 0};
     instance.diffuse_reflectivity = {glm::vec3(material.diffuse), reflectivity_of(item, material, false)};
     instance.specular_shininess = {highlight_of(item, material), material.shininess};
-    if (item.clip_plane) instance.clip_plane = clip_plane_of(item, geometry);
+    if (!item.clip_planes.empty()) instance.clip_plane = in_local_space(item.clip_planes[0], item, geometry);
     const std::size_t first = facing_.front().first;
     const std::size_t count = facing_.back().first + facing_.back().count - first;
     draws_.push_back({static_cast<GLuint>(3 * count), 1,
@@ -338,7 +350,8 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
         const plan::DrawItem& first = items.front();
         const GpuGeometry& geometry = scene_->geometry(first);
         std::size_t length = 1;
-        if (geometry.buffers->shared && !first.emissive && !plan::is_mapped(first)) {
+        if (geometry.buffers->shared && !first.emissive && !plan::is_mapped(first) &&
+            first.clip_planes.size() <= 1) {
             length = run_length(items);
             draw_run(items.first(length), state, material, stats);
         } else if (find_facing(first, geometry)) {
@@ -354,24 +367,19 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
     }
 }
 
-void SolidColorProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    if (current_ != geometry.is_double_single()) {
-        current_ = geometry.is_double_single();
-        programs_.use(*current_ ? FixedProgram::solid_color_double_single : FixedProgram::solid_color);
+void PlainProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    using Output = PlainVariant::Output;
+    const PlainVariant variant{color_ ? Output::color : Output::node_id, geometry.is_double_single(),
+                               clip_capacity(item.clip_planes.size())};
+    if (current_ != variant) {
+        current_ = variant;
+        programs_.use(variant);
         set_clip(clip_from_view_);
-        set(solid_color_at, glm::vec3(color_));
+        if (color_) set(solid_color_at, glm::vec3(*color_));
     }
+    if (!color_) glUniform1i(node_at, item.node);
     set_transform(item, geometry);
-}
-
-void NodeIdProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    if (current_ != geometry.is_double_single()) {
-        current_ = geometry.is_double_single();
-        programs_.use(*current_ ? FixedProgram::node_id_double_single : FixedProgram::node_id);
-        set_clip(clip_from_view_);
-    }
-    glUniform1i(node_at, item.node);
-    set_transform(item, geometry);
+    set_clip_planes(item, geometry);
 }
 
 void set_first_triangle(GLuint number) { glUniform1ui(first_triangle_at, number); }

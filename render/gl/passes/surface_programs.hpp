@@ -73,32 +73,20 @@ private:
     GlBuffer instance_buffer_, draw_buffer_;
 };
 
-/// The program of one colour everywhere, in both precisions. No other may be used before the last item.
-class SolidColorProgram {
+/// A program without light, in the variants that items need. No other may be used before the last item.
+class PlainProgram {
 public:
-    SolidColorProgram(Programs& programs, const glm::dvec3& color, const glm::dmat4& clip_from_view)
+    /// `color`: everywhere; none: the numbers of items' nodes, into a target of integers.
+    PlainProgram(Programs& programs, const std::optional<glm::dvec3>& color, const glm::dmat4& clip_from_view)
         : programs_(programs), color_(color), clip_from_view_(clip_from_view) {}
     /// Makes the one for this item the current one.
     void use(const plan::DrawItem& item, const GpuGeometry& geometry);
 
 private:
     Programs& programs_;
-    glm::dvec3 color_;
+    std::optional<glm::dvec3> color_;
     glm::dmat4 clip_from_view_;
-    std::optional<bool> current_;  // double_single
-};
-
-/// The same, which writes the number of an item's node everywhere, into a target of integers.
-class NodeIdProgram {
-public:
-    NodeIdProgram(Programs& programs, const glm::dmat4& clip_from_view)
-        : programs_(programs), clip_from_view_(clip_from_view) {}
-    void use(const plan::DrawItem& item, const GpuGeometry& geometry);
-
-private:
-    Programs& programs_;
-    glm::dmat4 clip_from_view_;
-    std::optional<bool> current_;  // double_single
+    std::optional<PlainVariant> current_;
 };
 
 /// The buffers of shaders/per_pixel_lists.glsl.

@@ -1,5 +1,9 @@
 #version 450 core
+#include "discard_clipped.glsl"
 layout(location = 4) uniform int number;
 out int node;
 
-void main() { node = number; }
+void main() {
+    discard_clipped();
+    node = number;
+}

@@ -1,5 +1,9 @@
 #version 450 core
+#include "discard_clipped.glsl"
 layout(location = 3) uniform vec3 solid_color;
 out vec4 color;
 
-void main() { color = vec4(solid_color, 1); }
+void main() {
+    discard_clipped();
+    color = vec4(solid_color, 1);
+}

@@ -1,5 +1,6 @@
 #version 450 core
 #include "view_uniforms.glsl"
+#include "discard_clipped.glsl"
 #ifndef LIT_AT_VERTEX
 #include "phong.glsl"
 #endif
@@ -162,6 +163,7 @@ vec3 metallic_color(vec3 displayed_base, vec3 to_eye, float d, vec3 n, vec3 smoo
 #endif
 
 void main() {
+    discard_clipped();
 #ifdef NEEDS_NORMAL
     float d = length(view_position);
     vec3 to_eye = -view_position / d;

@@ -1,6 +1,7 @@
 #version 450 core
 #include "view_uniforms.glsl"
 #include "local_position.glsl"
+#include "clip_planes.glsl"
 #ifdef LIT_AT_VERTEX
 #include "phong.glsl"
 #endif
@@ -11,20 +12,15 @@ layout(location = 7) in mat3 normal_matrix;
 layout(location = 10) in vec4 base_sides;  // w: 1 if two-sided
 layout(location = 11) in vec4 diffuse_reflectivity;
 layout(location = 12) in vec4 specular_shininess;
-layout(location = 13) in vec4 clip_plane;
 flat out vec3 base, diffuse, specular;
 flat out float two_sided, reflectivity, shininess;
 #else
 layout(location = 1) uniform mat4 view_from_local;
 layout(location = 2) uniform mat3 normal_matrix;
-layout(location = 13) uniform vec4 clip_plane;
 #ifdef LIT_AT_VERTEX
 layout(location = 8) uniform float shininess;
 layout(location = 9) uniform float two_sided;
 #endif
-#endif
-#ifdef CLIPPED
-out float gl_ClipDistance[1];
 #endif
 #ifdef LIT_AT_VERTEX
 out vec2 light;
@@ -53,9 +49,7 @@ void main() {
     reflectivity = diffuse_reflectivity.w;
     shininess = specular_shininess.w;
 #endif
-#ifdef CLIPPED
-    gl_ClipDistance[0] = dot(clip_plane, vec4(local, 1));
-#endif
+    clip_by_planes(local);
 #if defined(TEXTURED) || defined(EMISSIVE) || defined(MAPPED)
     uv = texcoord;
 #endif
