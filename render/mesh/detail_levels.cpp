@@ -25,47 +25,67 @@ std::vector<DetailLevel> levels_of(const scene::Geometry& geometry, const std::a
 }  // namespace
 
 struct DetailLevels::LevelGenerator {
+    enum class Watertight { unknown, no, yes };
     struct LevelChain {
         std::vector<DetailLevel> levels;
         std::atomic<bool> made{false};  ///< from then on `levels` do not change
-        std::atomic<bool> watertight{false};
+        std::atomic<Watertight> watertight{Watertight::unknown};
     };
 
     LevelGenerator(std::shared_ptr<const scene::Scene> of, OnFailure call_on_failure)
         : scene(std::move(of)), chains(scene->geometries().size()), on_failure(std::move(call_on_failure)) {}
-    void find_watertight(const std::vector<std::size_t>& order);
-    void make_all();
+    void examine(const std::vector<std::size_t>& order);
+    void make_levels(const std::vector<std::size_t>& order);
+    void work();
     void report(const std::exception& error) const;
     void run();
 
     const std::shared_ptr<const scene::Scene> scene;
     std::vector<LevelChain> chains;  // one for each geometry
     const OnFailure on_failure;
-    std::atomic<bool> stop{false}, done{false};
+    std::atomic<bool> stop{false}, done{false}, examined{false};
 };
 
-void DetailLevels::LevelGenerator::find_watertight(const std::vector<std::size_t>& order) {
-    const std::vector<scene::Material>& materials = scene->materials();
-    if (std::none_of(materials.begin(), materials.end(),
-                     [](const scene::Material& m) { return m.two_sided; }))
-        return;
-    for (const std::size_t at : order)
-        chains[at].watertight.store(is_watertight(scene->geometries()[at], stop), std::memory_order_relaxed);
+namespace {
+
+void set(std::atomic<bool>& flag) {
+    flag = true;
+    flag.notify_all();
 }
 
-void DetailLevels::LevelGenerator::make_all() {
-    const std::vector<scene::Geometry>& geometries = scene->geometries();
+std::vector<std::size_t> by_falling_size(const std::vector<scene::Geometry>& geometries) {
     std::vector<std::size_t> order(geometries.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return geometries[a].triangles.size() > geometries[b].triangles.size();
     });
-    find_watertight(order);
+    return order;
+}
+
+}  // namespace
+
+void DetailLevels::LevelGenerator::examine(const std::vector<std::size_t>& order) {
+    for (const std::size_t at : order)
+        chains[at].watertight.store(
+            is_watertight(scene->geometries()[at], stop) ? Watertight::yes : Watertight::no,
+            std::memory_order_relaxed);
+}
+
+void DetailLevels::LevelGenerator::make_levels(const std::vector<std::size_t>& order) {
     for (const std::size_t at : order) {
         if (stop) break;
-        chains[at].levels = levels_of(geometries[at], stop);
+        chains[at].levels = levels_of(scene->geometries()[at], stop);
         chains[at].made.store(true, std::memory_order_release);
     }
+    set(done);
+}
+
+void DetailLevels::LevelGenerator::work() {
+    const std::vector<std::size_t> order = by_falling_size(scene->geometries());
+    const bool culls = std::ranges::any_of(scene->materials(), &scene::Material::two_sided);
+    if (culls) examine(order);
+    make_levels(order);
+    if (!culls) examine(order);
 }
 
 /// Without memory the report may fail, too; the levels are missing all the same.
@@ -79,12 +99,12 @@ void DetailLevels::LevelGenerator::report(const std::exception& error) const {
 void DetailLevels::LevelGenerator::run() {
     base::lower_thread_priority();
     try {
-        make_all();
+        work();
     } catch (const std::exception& error) {
         report(error);
     }
-    done = true;
-    done.notify_all();
+    set(done);
+    set(examined);
 }
 
 DetailLevels::DetailLevels(std::shared_ptr<const scene::Scene> scene, OnFailure on_failure)
@@ -102,12 +122,21 @@ std::span<const DetailLevel> DetailLevels::of(scene::Index geometry) const {
     return chain.levels;
 }
 
-bool DetailLevels::known_watertight(scene::Index geometry) const {
-    return generator_->chains[static_cast<std::size_t>(geometry)].watertight.load(std::memory_order_relaxed);
+std::optional<bool> DetailLevels::watertight(scene::Index geometry) const {
+    using Watertight = LevelGenerator::Watertight;
+    const bool examined = generator_->examined;
+    const Watertight known =
+        generator_->chains[static_cast<std::size_t>(geometry)].watertight.load(std::memory_order_relaxed);
+    if (known == Watertight::unknown && !examined) return {};
+    return known == Watertight::yes;
 }
 
 void DetailLevels::wait() const { generator_->done.wait(false); }
 
 bool DetailLevels::done() const { return generator_->done; }
+
+void DetailLevels::wait_until_examined() const { generator_->examined.wait(false); }
+
+bool DetailLevels::examined() const { return generator_->examined; }
 
 }  // namespace vrut::mesh

@@ -120,7 +120,7 @@ void cull_backfaces(DrawLists& lists, const View& view) {
     const scene::Scene& scene = *view.scene->scene;
     for (DrawItem& item : lists.opaque)
         if (item.cull_mode == CullMode::none && item.clip_planes.empty() &&
-            view.levels->known_watertight(item.geometry) && !is_flattened(item.view_from_node) &&
+            view.levels->watertight(item.geometry).value_or(false) && !is_flattened(item.view_from_node) &&
             is_beyond_near_plane(
                 transformed(item.view_from_node,
                             scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds),

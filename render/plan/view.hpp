@@ -73,8 +73,8 @@ struct View {
     int width = 1280, height = 720;
     int samples = 1;    ///< per pixel, averaged; a single one is at its centre
     double detail = 0;  ///< largest error of levels of detail in pixels; 0: every triangle
-    /// Levels of detail of the scene, for `detail`, and its watertight geometries, for backface culling;
-    /// null: not available.
+    /// Levels of detail of the scene, for `detail`, and its watertight geometries, for backface culling and
+    /// caps; null: not available.
     std::shared_ptr<const mesh::DetailLevels> levels;
     Methods methods;
     scene::Light light;

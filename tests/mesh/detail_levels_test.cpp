@@ -353,6 +353,40 @@ TEST_CASE("levels are made in the background, for each geometry") {
     CHECK(levels.of(0).back().triangles == mesh::simplify(scene->geometries()[0], kGoOn).back().triangles);
 }
 
+TEST_CASE("each geometry is examined for holes, two-sided or not") {
+    const scene::Geometry whole = welded(sphere(1, 8));
+    scene::Geometry holed = whole;
+    holed.triangles.pop_back();
+    for (const bool two_sided : {false, true}) {
+        CAPTURE(two_sided);
+        const mesh::DetailLevels levels(scene_with({whole, holed, {}, torus(40, 20)}, two_sided));
+        levels.wait();
+        if (two_sided) CHECK(levels.watertight(0).has_value());
+        levels.wait_until_examined();
+        CHECK(levels.examined());
+        CHECK(levels.done());
+        for (const scene::Index geometry : {0, 1, 2, 3})
+            CHECK(levels.watertight(geometry) == (geometry == 0 || geometry == 3));
+    }
+}
+
+TEST_CASE("levels do not wait for the examination of one-sided geometries") {
+    const auto scene = scene_with({torus(120, 60)});
+    const mesh::DetailLevels levels(scene);
+    while (levels.of(0).empty()) std::this_thread::yield();
+    const large_allocations::Rule rule(large_allocations::halt);
+    levels.wait();
+    while (large_allocations::halted == 0 && !levels.examined()) std::this_thread::yield();
+    if (large_allocations::halted > 0) {
+        CHECK(levels.done());
+        CHECK_FALSE(levels.examined());
+        CHECK_FALSE(levels.watertight(0).has_value());
+    }
+    large_allocations::rule = large_allocations::allow;
+    levels.wait_until_examined();
+    CHECK(levels.watertight(0) == true);
+}
+
 TEST_CASE("levels can be given up while they are made") {
     const auto scene = scene_with(std::vector<scene::Geometry>(400, torus(120, 60)));
     const mesh::DetailLevels none(scene_with({}));
@@ -390,6 +424,8 @@ TEST_CASE("levels for which there is no memory are not made, and the reason is r
     CHECK(levels.done());
     CHECK(levels.of(0).empty());
     CHECK(levels.of(1).empty());
+    levels.wait_until_examined();
+    CHECK(levels.watertight(1) == false);  // it is not known, and will not be
 }
 
 TEST_CASE("whichever allocation fails on the thread that makes levels, the program goes on") {
