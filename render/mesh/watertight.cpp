@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "mesh/self_intersection.hpp"
+#include "mesh/union_find.hpp"
 #include "mesh/vertex_adjacency.hpp"
 
 namespace vrut::mesh {
@@ -34,22 +34,6 @@ std::vector<glm::uvec3> with_merged_positions(const scene::Geometry& geometry) {
     }
     return triangles;
 }
-
-/// Triangles that hang together (union-find).
-class UnionFind {
-public:
-    explicit UnionFind(std::size_t count) : parents_(count) {
-        std::iota(parents_.begin(), parents_.end(), 0U);
-    }
-    unsigned find(unsigned triangle) {
-        while (parents_[triangle] != triangle) triangle = parents_[triangle] = parents_[parents_[triangle]];
-        return triangle;
-    }
-    void unite(unsigned a, unsigned b) { parents_[find(b)] = find(a); }
-
-private:
-    std::vector<unsigned> parents_;
-};
 
 /// An edge's other end, and the triangle on one of its sides.
 struct HalfEdge {
