@@ -1,9 +1,11 @@
 #include "mesh/triangulation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "mesh/edge_rows.hpp"
 
@@ -11,9 +13,47 @@ namespace vrut::mesh {
 
 namespace {
 
-/// Twice the area of a triangle; above 0 if it is counter-clockwise.
+/// A number as the sum of doubles that do not overlap, smaller ones first (J. Shewchuk, "Adaptive Precision
+/// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997).
+class ExactSum {
+public:
+    void add(double value) {
+        for (std::size_t i = 0; i < size_; ++i) {
+            const double sum = value + parts_[i], part = sum - value;
+            parts_[i] = (value - (sum - part)) + (parts_[i] - part);
+            value = sum;
+        }
+        parts_[size_++] = value;
+    }
+    void add_product(double a, double b) {
+        const double product = a * b;
+        add(std::fma(a, b, -product));
+        add(product);
+    }
+    /// Nearly its value; its sign is exact.
+    double value() const {
+        for (std::size_t i = size_; i-- > 0;)
+            if (parts_[i] != 0) return parts_[i];
+        return 0;
+    }
+
+private:
+    std::array<double, 12> parts_{};
+    std::size_t size_ = 0;
+};
+
+/// Twice the area of a triangle; above 0 if it is counter-clockwise, and 0 if it is straight. The sign is
+/// exact: else a point on an edge could be on neither side of it.
 double area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-    return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+    const double left = (b.x - a.x) * (c.y - a.y), right = (c.x - a.x) * (b.y - a.y);
+    constexpr double kMostRounding = 2 * std::numeric_limits<double>::epsilon();  // 1.5 and a bit would do
+    if (std::abs(left - right) >= kMostRounding * (std::abs(left) + std::abs(right))) return left - right;
+    ExactSum sum;
+    for (const auto& [p, q] : {std::pair(&a, &b), std::pair(&b, &c), std::pair(&c, &a)}) {
+        sum.add_product(p->x, q->y);
+        sum.add_product(-p->y, q->x);
+    }
+    return sum.value();
 }
 
 /// The polygon in the plane of two axes, counter-clockwise, by the area vector of M. Newell (1972).

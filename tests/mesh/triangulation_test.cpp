@@ -233,7 +233,7 @@ TEST_CASE("holes may touch the outer loop and each other") {
     Perforated column = perforated({{-2, -1, 0}, {2, -1, 0}, {2, 9, 0}, {-2, 9, 0}});
     for (unsigned i = 0; i < 5; ++i) column.add_hole(moved(diamond, {0, 2.0 * i}, 1));
     check_cover(column);
-    Perforated at_corner = perforated({{-1, 0, 0}, {3, -3, 0}, {3, 3, 0}});
+    Perforated at_corner = perforated({{-1, 0, 0}, {3, -8, 0}, {3, 8, 0}});
     at_corner.add_hole(diamond);
     check_cover(at_corner);
 }
