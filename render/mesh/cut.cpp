@@ -47,15 +47,19 @@ std::optional<CuttingPlane> cutting_plane(const scene::Geometry& geometry, const
 /// Where a corner is. Of a triangle that is crossed they add up to 1 or 2.
 enum Side : std::uint8_t { kCutAway = 0, kKept = 1, kNotFinite = 4 };
 
-std::vector<std::uint8_t> sides_of(const std::vector<glm::dvec3>& positions, const CuttingPlane& plane) {
-    std::vector<std::uint8_t> sides(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        const glm::dvec3& p = positions[i];
+/// The plane by value and the pointers: a byte that is written could be any of what is reached by reference.
+std::vector<std::uint8_t> sides_of(const std::vector<glm::dvec3>& positions, const CuttingPlane plane) {
+    const std::size_t count = positions.size();
+    std::vector<std::uint8_t> result(count);
+    const glm::dvec3* const points = positions.data();
+    std::uint8_t* const sides = result.data();
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 p = points[i];
         const double size = std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
         const std::uint8_t side = plane.height(p) > 0 ? kKept : kCutAway;
         sides[i] = size < kMostCoordinate ? side : std::uint8_t{kNotFinite};
     }
-    return sides;
+    return result;
 }
 
 /// By its ends, of which `a` is lexicographically smaller: the same for both of its triangles.
@@ -124,10 +128,13 @@ private:
 
     void add_lines() {
         std::vector<std::uint32_t> crossed;
-        for (std::size_t i = 0; i < geometry_.triangles.size(); ++i) {
-            const glm::uvec3& t = geometry_.triangles[i];
-            const unsigned sum = unsigned{sides_[t.x]} + sides_[t.y] + sides_[t.z];
-            if (sum - 1U < 2U) crossed.push_back(static_cast<std::uint32_t>(i));
+        const std::uint8_t* const sides = sides_.data();
+        const glm::uvec3* const triangles = geometry_.triangles.data();
+        const auto count = static_cast<std::uint32_t>(geometry_.triangles.size());
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const unsigned sum =
+                unsigned{sides[triangles[i].x]} + sides[triangles[i].y] + sides[triangles[i].z];
+            if (sum - 1U < 2U) crossed.push_back(i);
         }
         lines_.reserve(crossed.size());
         points_.reserve(crossed.size());

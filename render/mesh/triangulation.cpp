@@ -71,7 +71,7 @@ std::vector<glm::dvec2> projected(const std::vector<glm::dvec3>& corners) {
     return flat;
 }
 
-/// Points of a plane by square cells, about one for each point.
+/// Points of a plane by cells, about one for each point, in the proportions of all.
 class PointGrid {
 public:
     explicit PointGrid(const std::vector<glm::dvec2>& points) : points_(points), min_(points[0]) {
@@ -81,8 +81,8 @@ public:
             max = glm::max(max, point);
         }
         side_ = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(points.size()))));
-        const double extent = std::max(max.x - min_.x, max.y - min_.y);
-        cells_per_unit_ = extent > 0 ? side_ / extent : 0;
+        const glm::dvec2 extent = max - min_;
+        cells_per_unit_ = {extent.x > 0 ? side_ / extent.x : 0, extent.y > 0 ? side_ / extent.y : 0};
         cells_.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_));
     }
     void add(unsigned point) { cell(cell_of(points_[point])).push_back(point); }
@@ -112,7 +112,7 @@ private:
     const std::vector<glm::dvec2>& points_;
     glm::dvec2 min_;
     int side_ = 1;
-    double cells_per_unit_ = 0;
+    glm::dvec2 cells_per_unit_{0};
     std::vector<std::vector<unsigned>> cells_;
 };
 
@@ -129,10 +129,10 @@ public:
 
     /// Every other corner is passed over, as far as that goes: triangles grow in both directions. Where no
     /// corner is an ear, the polygon crosses itself, most often by rounding: the smallest corner goes.
-    std::vector<glm::uvec3> clip() {
+    std::vector<glm::uvec3> clip(bool bridged = false) {
         triangles_.reserve(corners_.size());
         std::size_t left = corners_.size(), tried = 0, forced = 0;
-        Rule rule = Rule::strict;
+        Rule rule = bridged ? Rule::touching : Rule::strict;
         for (unsigned at = 0; left >= 3;) {
             const unsigned next = links_[at].next;
             if (left == 3 || is_ear(at, rule)) {
@@ -145,13 +145,13 @@ public:
             at = next;
             if (++tried < left) continue;
             tried = 0;
-            if (rule == Rule::touching) {
-                at = cut_smallest(at);
-                --left;
-                if (++forced == kMostForced) rule = Rule::any;
-            } else {
-                rule = Rule::touching;
+            if (rule != Rule::flat) {
+                rule = rule == Rule::strict ? Rule::touching : Rule::flat;
+                continue;
             }
+            at = cut_smallest(at);
+            --left;
+            if (++forced == kMostForced) rule = Rule::any;
         }
         return std::move(triangles_);
     }
@@ -162,8 +162,8 @@ private:
         bool cut = false;
         bool reflex = false;  ///< or straight
     };
-    /// What an ear is: nothing touches it; others may touch its corners, and it may be flat; any three.
-    enum class Rule { strict, touching, any };
+    /// What an ear is: nothing touches it; others may touch its corners; it may be flat, too; any three.
+    enum class Rule { strict, touching, flat, any };
     static constexpr std::size_t kMostForced = 32;  ///< each takes the time to look at all corners
 
     /// A convex corner stays convex whatever is cut off.
@@ -175,12 +175,12 @@ private:
         if (rule == Rule::any) return true;
         const Link& link = links_[corner];
         const glm::dvec2 &a = corners_[link.previous], &b = corners_[corner], &c = corners_[link.next];
-        if (rule == Rule::strict ? link.reflex : area(a, b, c) < 0) return false;
+        if (rule == Rule::flat ? area(a, b, c) < 0 : link.reflex) return false;
         const auto is_in_the_way = [&](unsigned other) {
             if (links_[other].cut || !links_[other].reflex) return false;
             if (other == link.previous || other == link.next) return false;
             const glm::dvec2& p = corners_[other];
-            if (rule == Rule::touching && (p == a || p == b || p == c)) return false;
+            if (rule != Rule::strict && (p == a || p == b || p == c)) return false;
             return other != corner && area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0;
         };
         return !reflex_grid_.any_of(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), is_in_the_way);
@@ -397,7 +397,7 @@ std::vector<glm::uvec3> triangulate(std::span<const glm::dvec2> corners,
     std::vector<glm::dvec2> points;
     points.reserve(polygon.size());
     for (const unsigned corner : polygon) points.push_back(corners[corner]);
-    std::vector<glm::uvec3> triangles = EarClipping(std::move(points)).clip();
+    std::vector<glm::uvec3> triangles = EarClipping(std::move(points)).clip(true);
     for (glm::uvec3& t : triangles) t = {polygon[t.x], polygon[t.y], polygon[t.z]};
     return triangles;
 }
