@@ -358,8 +358,8 @@ std::array<glm::dvec3, 2> axes_across(const glm::dvec3& n) {
 
 /// Parallel lines in the geometry's space: at `level` = whole numbers.
 struct HatchingLines {
-    glm::dvec3 origin;         ///< near the cut
-    glm::dvec3 across, along;  ///< per unit of the geometry
+    glm::dvec3 origin{0};            ///< near the cut
+    glm::dvec3 across{0}, along{0};  ///< per unit of the geometry
     double origin_level = 0;
     bool mirrored = false;
 
