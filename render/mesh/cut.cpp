@@ -305,10 +305,32 @@ private:
                 if (const auto around = loop_around(loops_[i], sides, rows))
                     loops_[*around].holes.push_back(i);
     }
-    /// The smallest loop of which an odd number of sides is on a hole's left.
+    /// Of the loops around the middle of its longest side the smallest. Where solids overlap, some of these
+    /// cross the hole: one that is around the most of its sides goes first.
     std::optional<std::size_t> loop_around(const ContourLoop& hole, const std::vector<LoopSide>& sides,
                                            const EdgeRows& rows) {
-        const glm::dvec2& p = hole.longest_middle;
+        around_.clear();
+        add_loops_around(hole.longest_middle, hole, sides, rows);
+        if (around_.empty()) return {};
+        if (around_.size() > 1)
+            for (std::size_t i = 0; i < hole.points.size(); ++i) {
+                const unsigned next = hole.points[(i + 1) % hole.points.size()];
+                add_loops_around((flat_[hole.points[i]] + flat_[next]) / 2.0, hole, sides, rows);
+            }
+        std::sort(around_.begin(), around_.end());
+        std::size_t best = around_[0], most = 0;
+        for (std::size_t i = 0, end = 0; i < around_.size(); i = end) {
+            while (end < around_.size() && around_[end] == around_[i]) ++end;
+            const std::size_t count = end - i;
+            if (count < most || (count == most && loops_[around_[i]].area >= loops_[best].area)) continue;
+            best = around_[i];
+            most = count;
+        }
+        return best;
+    }
+    /// Those of which an odd number of sides is on a point's left.
+    void add_loops_around(const glm::dvec2& p, const ContourLoop& hole, const std::vector<LoopSide>& sides,
+                          const EdgeRows& rows) {
         crossed_.clear();
         for (const unsigned number : rows.at(p.y)) {
             const auto& [start, end, loop] = sides[number];
@@ -317,13 +339,10 @@ private:
                 crossed_.push_back(loop);
         }
         std::sort(crossed_.begin(), crossed_.end());
-        std::optional<std::size_t> smallest;
         for (std::size_t i = 0, end = 0; i < crossed_.size(); i = end) {
             while (end < crossed_.size() && crossed_[end] == crossed_[i]) ++end;
-            if ((end - i) % 2 == 0) continue;
-            if (!smallest || loops_[crossed_[i]].area < loops_[*smallest].area) smallest = crossed_[i];
+            if ((end - i) % 2 == 1) around_.push_back(crossed_[i]);
         }
-        return smallest;
     }
 
     void add_triangles(const ContourLoop& outer) {
@@ -344,7 +363,7 @@ private:
 
     std::vector<glm::dvec2> flat_;
     std::vector<ContourLoop> loops_;
-    std::vector<std::size_t> crossed_;
+    std::vector<std::size_t> crossed_, around_;
     std::vector<glm::uvec3> triangles_;
 };
 

@@ -214,6 +214,15 @@ TEST_CASE("random planes through random solids") {
     }
 }
 
+TEST_CASE("solids that overlap have caps of their own") {
+    const glm::dvec3 up(0, 0, 1);
+    // The second is around the middle of one of the hole's sides, and smaller than the first.
+    const scene::Geometry both = together(hollow_box(), mapped(box({1.5, 1.75, 3}), 1, {0.75, 0.5, 0}));
+    const mesh::Cut found = cut(both, {up, 0.3});
+    check_cap(found, up);
+    CHECK(cap_area(found, up) == doctest::Approx(12 + 10.5));
+}
+
 TEST_CASE("far from the origin the digits of the positions are left") {
     std::mt19937 random(3);
     for (unsigned i = 0; i < 50; ++i) {
