@@ -22,12 +22,13 @@ struct Cut {
 /// the geometry's space, of any length, as scene::clip_equation() returns it: points where the dot product
 /// with (point, 1) is positive are kept. Corners on the plane count as cut away, and corners of equal
 /// position are one: the contours of a watertight geometry (is_watertight()) close. Triangles with a corner
-/// that is not finite, or beyond 10¹⁵⁰, have no lines. Empty where the equation is not a plane's.
+/// that is not finite, or beyond 10¹⁵⁰, have no lines. Empty where the equation is not a plane's. Solids that
+/// overlap have caps that do; where one reaches into a hole of another, triangles may cross its contour.
 Cut cut_of(const scene::Geometry& geometry, const glm::dvec4& equation, bool cap);
 
 /// Lines that hatching may have; beyond it their spacing doubles until it has fewer.
 inline constexpr int kMostHatchingLines = 4096;
-/// As many times may they meet contours, for each of which there may be one more.
+/// The same for their crossings of contours, about: each contour line may have one more.
 inline constexpr int kMostHatchingCrossings = 65536;
 
 /// Adds hatching to a cut that has a cap: parallel lines within its contours, at 45 degrees to axes that
