@@ -40,4 +40,11 @@ inline double edge_function(const glm::dvec3& a, const glm::dvec3& b) {
     return std::fma(a.x, b.y, -p) - std::fma(a.y, b.x, -q);
 }
 
+/// The sign of edge_function(a, b), which is `value`. Where the ray goes exactly through the edge it is taken
+/// to pass a hair to its right, and less than a hair above: the same side for both triangles of the edge.
+inline double edge_side(double value, const glm::dvec3& a, const glm::dvec3& b) {
+    if (value != 0) return value;
+    return a.y != b.y ? a.y - b.y : b.x - a.x;
+}
+
 }  // namespace vrut::math

@@ -102,39 +102,58 @@ struct Windings {
     bool clockwise = false, counter_clockwise = false;  ///< in the ray's space
 };
 
+bool is_singular(double relative_determinant) { return !(std::abs(relative_determinant) > 1e-12); }
+
 /// Returns the windings that are drawn.
 Windings drawn_windings(const InstanceAtRay& part, bool two_sided) {
     const double determinant = scene::relative_determinant(part.axes);
-    const bool singular = !(std::abs(determinant) > 1e-12);
-    const bool both = singular || two_sided;
+    const bool both = is_singular(determinant) || two_sided;
     return {both || determinant > 0, both || determinant < 0};
 }
+
+/// A triangle in the ray's space, and its edge functions.
+struct TriangleAtRay {
+    TriangleAtRay(const InstanceAtRay& part, const math::RaySpace& space, std::uint32_t number) {
+        const glm::uvec3& triangle = part.geometry.triangles[number];
+        const auto corner = [&](unsigned vertex) {
+            return space.to_ray_space(part.seen(part.geometry.positions[vertex]));
+        };
+        a = corner(triangle.x);
+        b = corner(triangle.y);
+        c = corner(triangle.z);
+        u = math::edge_function(c, b);
+        v = math::edge_function(a, c);
+        w = math::edge_function(b, a);
+    }
+    double area() const { return u + v + w; }
+    /// Along the ray to the triangle's plane; not finite where the area is 0.
+    double distance() const { return a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / area(); }
+
+    glm::dvec3 a{0}, b{0}, c{0};
+    double u = 0, v = 0, w = 0;
+};
 
 /// The search for the first triangle of a part along a ray.
 class TriangleSearch {
 public:
-    /// Looks for hits before `farthest`.
+    /// Looks for hits from `nearest` on and before `farthest`.
     TriangleSearch(const InstanceAtRay& part, const math::RaySpace& space, const Windings& windings,
-                   double farthest)
-        : part_(part), space_(space), windings_(windings), farthest_(farthest) {}
+                   double nearest, double farthest)
+        : part_(part), space_(space), windings_(windings), nearest_(nearest), farthest_(farthest) {}
 
     /// Of equal distances the lower number is hit, in whatever order they are asked.
     void test(std::uint32_t number) {
-        const glm::uvec3& triangle = part_.geometry.triangles[number];
-        const glm::dvec3 a = corner(triangle.x), b = corner(triangle.y), c = corner(triangle.z);
-        const double u = math::edge_function(c, b), v = math::edge_function(a, c),
-                     w = math::edge_function(b, a);
+        const TriangleAtRay seen(part_, space_, number);
         // Asked for what is hit, not for what is missed: a number that is not finite misses.
-        const bool clockwise = u >= 0 && v >= 0 && w >= 0;
-        const bool counter_clockwise = u <= 0 && v <= 0 && w <= 0;
+        const bool clockwise = seen.u >= 0 && seen.v >= 0 && seen.w >= 0;
+        const bool counter_clockwise = seen.u <= 0 && seen.v <= 0 && seen.w <= 0;
         if (!(clockwise && windings_.clockwise) && !(counter_clockwise && windings_.counter_clockwise))
             return;
-        const double area = u + v + w;
-        if (area == 0) return;
-        const double distance = a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / area;
-        if (!(distance > 0)) return;
+        if (seen.area() == 0) return;
+        const double distance = seen.distance();
+        if (!(distance > 0 && distance >= nearest_)) return;
         if (!(distance < farthest_ || (met_ && distance == farthest_ && number < number_))) return;
-        const glm::dvec3 normal = face_normal(part_, triangle);
+        const glm::dvec3 normal = face_normal(part_, part_.geometry.triangles[number]);
         if (normal == glm::dvec3(0)) return;
         farthest_ = distance;
         normal_ = normal;
@@ -146,13 +165,10 @@ public:
     const glm::dvec3& normal() const { return normal_; }
 
 private:
-    glm::dvec3 corner(unsigned vertex) const {
-        return space_.to_ray_space(part_.seen(part_.geometry.positions[vertex]));
-    }
-
     const InstanceAtRay& part_;
     const math::RaySpace& space_;
     Windings windings_;
+    double nearest_;
     double farthest_;  ///< the distance of the hit, once there is one
     glm::dvec3 normal_{0};
     std::uint32_t number_ = 0;
@@ -210,59 +226,133 @@ private:
     double nearest_ = 0;   ///< and at its origin, less the slack
 };
 
-void search(TriangleSearch& triangles, const InstanceAtRay& part, const Ray& ray, const Bvh<float>* tree) {
-    const auto test = [&](std::uint32_t number) { triangles.test(number); };
+/// Calls `test` with each triangle that the ray may meet before `farthest`, which may fall meanwhile.
+void search(const InstanceAtRay& part, const Ray& ray, const Bvh<float>* tree, const double& farthest,
+            const auto& test) {
     if (tree)
-        if (const auto in_tree = RayInTree::of(part, ray))
-            return tree->visit(*in_tree, triangles.farthest(), test);
+        if (const auto in_tree = RayInTree::of(part, ray)) return tree->visit(*in_tree, farthest, test);
     for (std::uint32_t number = 0; number < part.geometry.triangles.size(); ++number) test(number);
+}
+
+/// A node that a ray may hit.
+struct PickedNode {
+    scene::Index index = scene::kNone;
+    scene::Index geometry = scene::kNone;
+    bool faces = true;  ///< they can be hit, and not only caps
+    bool two_sided = false;
+};
+
+/// Looks for the first hit, node by node.
+class Picker {
+public:
+    Picker(const scene::PlacedScene& placed, const Ray& ray, const PickOptions& options,
+           const scene::KeptInterval& kept)
+        : placed_(placed), ray_(ray), options_(options), kept_(kept), space_(ray.direction) {
+        const bool closes = kept.cap && options.clip_planes[*kept.cap].caps && options.is_solid;
+        if (closes) cap_normal_ = options.clip_planes[*kept.cap].normal;
+    }
+
+    void test(const PickedNode& node) {
+        const bool capped = cap_normal_ && options_.is_solid(node.geometry);
+        if (!node.faces && !capped) return;
+        const scene::Geometry& geometry =
+            placed_.scene->geometries()[static_cast<std::size_t>(node.geometry)];
+        const InstanceAtRay part(geometry, placed_.world[static_cast<std::size_t>(node.index)], ray_.origin);
+        const std::optional<double> from = box_entry(part, ray_.direction);
+        if (!from || *from > best_.distance) return;
+        const Bvh<float>* tree = options_.trees ? options_.trees->of(node.geometry) : nullptr;
+        if (capped) test_cap(node, part, tree);
+        if (node.faces) test_faces(node, part, tree);
+    }
+
+    std::optional<Hit> result() const {
+        if (best_.node == scene::kNone) return {};
+        Hit hit = best_;
+        hit.point = ray_.origin + ray_.direction * hit.distance;
+        if (glm::dot(hit.normal, ray_.direction) > 0) hit.normal = -hit.normal;
+        return hit;
+    }
+
+private:
+    /// Hits of the node count before that distance; a tie is met too where the id is higher.
+    double farthest(const PickedNode& node) const {
+        const auto id = [&](scene::Index at) {
+            return placed_.scene->nodes()[static_cast<std::size_t>(at)].id;
+        };
+        const double farthest = best_.node == scene::kNone ? kept_.last : best_.distance;
+        const bool wins_ties = best_.node == scene::kNone || id(node.index) > id(best_.node);
+        return wins_ties ? std::nextafter(farthest, std::numeric_limits<double>::infinity()) : farthest;
+    }
+
+    void test_faces(const PickedNode& node, const InstanceAtRay& part, const Bvh<float>* tree) {
+        TriangleSearch triangles(part, space_, drawn_windings(part, node.two_sided), kept_.first,
+                                 farthest(node));
+        search(part, ray_, tree, triangles.farthest(), [&](std::uint32_t number) { triangles.test(number); });
+        if (triangles.met()) keep(node, triangles.farthest(), triangles.normal());
+    }
+
+    void test_cap(const PickedNode& node, const InstanceAtRay& part, const Bvh<float>* tree) {
+        if (!(kept_.first < farthest(node)) || is_singular(scene::relative_determinant(part.axes))) return;
+        int winding = 0;
+        search(part, ray_, tree, std::numeric_limits<double>::infinity(),
+               [&](std::uint32_t number) { winding += crossing(TriangleAtRay(part, space_, number)); });
+        if (winding != 0) keep(node, kept_.first, *cap_normal_);
+    }
+
+    /// 1 or -1, by its winding, for a triangle that the ray crosses beyond the plane. One exactly through an
+    /// edge or a corner crosses as many of each winding as one beside it.
+    int crossing(const TriangleAtRay& seen) const {
+        const double u = math::edge_side(seen.u, seen.c, seen.b), v = math::edge_side(seen.v, seen.a, seen.c),
+                     w = math::edge_side(seen.w, seen.b, seen.a);
+        const bool clockwise = u > 0 && v > 0 && w > 0, counter_clockwise = u < 0 && v < 0 && w < 0;
+        if ((!clockwise && !counter_clockwise) || !(seen.distance() > kept_.first)) return 0;
+        return clockwise ? 1 : -1;
+    }
+
+    void keep(const PickedNode& node, double distance, const glm::dvec3& normal) {
+        best_.node = node.index;
+        best_.distance = distance;
+        best_.normal = normal;
+    }
+
+    const scene::PlacedScene& placed_;
+    const Ray& ray_;
+    const PickOptions& options_;
+    const scene::KeptInterval& kept_;
+    const math::RaySpace space_;
+    std::optional<glm::dvec3> cap_normal_;  ///< of the plane through which the ray enters, if it has caps
+    Hit best_{scene::kNone, glm::dvec3(0), glm::dvec3(0), std::numeric_limits<double>::infinity()};
+};
+
+/// None where an image shows nothing of the node, or where picks pass it.
+std::optional<PickedNode> picked_node(const scene::PlacedScene& placed, std::size_t at,
+                                      const PickOptions& options) {
+    const bool uniform = scene::style_of(options.mode, false).override_material;  // no glass, no mirrors
+    const auto index = static_cast<scene::Index>(at);
+    const auto* data = std::get_if<scene::GeometryData>(&placed.scene->nodes()[at].data);
+    if (!data || data->geometry == scene::kNone || !scene::is_finite(placed.world[at])) return {};
+    if (placed.scene->is_presentation(index)) return {};
+    const scene::Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+    if (geometry.triangles.empty() || geometry.bounds.empty()) return {};
+    const scene::Material& material = placed.scene->material(placed.nodes[at].material);
+    const bool passed = options.through_transparent && placed.scene->is_transparent(material, data->geometry);
+    const bool invisible = !uniform && material.diffuse.a == 0;
+    return PickedNode{index, data->geometry, !passed && !invisible,
+                      material.two_sided || (!uniform && placed.scene->is_mirror(material, data->geometry))};
 }
 
 }  // namespace
 
-std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent,
-                        const PickingTrees* trees, scene::DrawMode mode) {
+std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, const PickOptions& options) {
     if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == glm::dvec3(0)) return {};
-    const bool uniform = scene::style_of(mode, false).override_material;  // no glass, no mirrors
+    const auto kept = scene::kept_interval(options.clip_planes, ray.origin, ray.direction);
+    if (!kept) return {};
     const std::vector<bool> shown = scene::shown_nodes(placed, ray.origin);
-    const auto& nodes = placed.scene->nodes();
-    const math::RaySpace space(ray.direction);
-    Hit best;
-    best.distance = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto* data = std::get_if<scene::GeometryData>(&nodes[i].data);
-        if (!shown[i] || !data || data->geometry == scene::kNone || !scene::is_finite(placed.world[i]))
-            continue;
-        if (placed.scene->is_presentation(static_cast<scene::Index>(i))) continue;
-        const scene::Geometry& geometry =
-            placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
-        const scene::Material& material = placed.scene->material(placed.nodes[i].material);
-        if (geometry.triangles.empty() || geometry.bounds.empty()) continue;
-        if (through_transparent && placed.scene->is_transparent(material, data->geometry)) continue;
-        if (!uniform && material.diffuse.a == 0) continue;
-        const bool two_sided =
-            material.two_sided || (!uniform && placed.scene->is_mirror(material, data->geometry));
-
-        const InstanceAtRay part(geometry, placed.world[i], ray.origin);
-        const std::optional<double> from = box_entry(part, ray.direction);
-        if (!from || *from > best.distance) continue;
-        // A tie is met too where the id is higher.
-        const bool wins_ties =
-            best.node != scene::kNone && nodes[i].id > nodes[static_cast<std::size_t>(best.node)].id;
-        const double farthest = wins_ties
-                                    ? std::nextafter(best.distance, std::numeric_limits<double>::infinity())
-                                    : best.distance;
-        TriangleSearch triangles(part, space, drawn_windings(part, two_sided), farthest);
-        search(triangles, part, ray, trees ? trees->of(data->geometry) : nullptr);
-        if (!triangles.met()) continue;
-        best.node = static_cast<scene::Index>(i);
-        best.distance = triangles.farthest();
-        best.normal = triangles.normal();
-    }
-    if (best.node == scene::kNone) return {};
-    best.point = ray.origin + ray.direction * best.distance;
-    if (glm::dot(best.normal, ray.direction) > 0) best.normal = -best.normal;
-    return best;
+    Picker picker(placed, ray, options, *kept);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (shown[i])
+            if (const auto node = picked_node(placed, i, options)) picker.test(*node);
+    return picker.result();
 }
 
 }  // namespace vrut::mesh

@@ -133,13 +133,6 @@ auto triangles_of(const std::vector<TracedInstance>& parts, bool transparent, au
     return triangles;
 }
 
-/// The sign of edge(a, b). Where the ray goes exactly through the edge it is taken to pass a hair to its
-/// right, and less than a hair above: the same side for both triangles of the edge.
-double side(double value, const glm::dvec3& a, const glm::dvec3& b) {
-    if (value != 0) return value;
-    return a.y != b.y ? a.y - b.y : b.x - a.x;
-}
-
 /// With the part left to be filled in.
 std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t triangle,
                                      const math::RaySpace& space, const glm::dvec3& origin) {
@@ -148,7 +141,8 @@ std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t t
     const glm::dvec3 b = space.to_ray_space(part.positions[corners.y] - origin);
     const glm::dvec3 c = space.to_ray_space(part.positions[corners.z] - origin);
     const double u = math::edge_function(c, b), v = math::edge_function(a, c), w = math::edge_function(b, a);
-    const double u_side = side(u, c, b), v_side = side(v, a, c), w_side = side(w, b, a);
+    const double u_side = math::edge_side(u, c, b), v_side = math::edge_side(v, a, c),
+                 w_side = math::edge_side(w, b, a);
     const bool clockwise = u_side > 0 && v_side > 0 && w_side > 0;
     const bool counter_clockwise = u_side < 0 && v_side < 0 && w_side < 0;
     if (!(clockwise && part.clockwise) && !(counter_clockwise && part.counter_clockwise)) return {};

@@ -145,7 +145,7 @@ void Laboratory::run_picking(const Subject& subject, const PartDone& done) {
             const scene::Index truth =
                 all.ask([&] { return ask_all(*view.scene, ray_through(view, point)); });
             const scene::Index met = ray.ask([&] {
-                const auto hit = mesh::pick(*view.scene, ray_through(view, point), false);
+                const auto hit = mesh::pick(*view.scene, ray_through(view, point));
                 return hit ? hit->node : scene::kNone;
             });
             ray.wrong += met != truth;

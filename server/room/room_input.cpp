@@ -138,7 +138,7 @@ std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, boo
     const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
     return mesh::pick(
         *scene_, {seen.camera.eye, scene::direction_through(seen.camera, size.width / size.height, point)},
-        through, loaded_.picking_trees.get(), visible_.mode);
+        {.through_transparent = through, .trees = loaded_.picking_trees.get(), .mode = visible_.mode});
 }
 
 void Room::apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit) {

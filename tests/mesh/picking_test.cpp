@@ -145,7 +145,7 @@ mesh::Ray down_z(double x, double y, double z = 5) { return {{x, y, z}, {0, 0, -
 /// The node's id; −1 where nothing is hit.
 scene::Id picked_id(const scene::PlacedScene& placed, const mesh::Ray& ray,
                     bool through_transparent = false) {
-    const auto hit = mesh::pick(placed, ray, through_transparent);
+    const auto hit = mesh::pick(placed, ray, {.through_transparent = through_transparent});
     return hit ? placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id : -1;
 }
 
@@ -298,7 +298,7 @@ void compare_with_reference(const scene::PlacedScene& placed, int count, bool th
         CAPTURE(i);
         const mesh::Ray ray = random_ray(random, box, i % 3 == 0);
         const Reference expected = reference_pick(placed, ray, through_transparent);
-        const auto hit = mesh::pick(placed, ray, through_transparent);
+        const auto hit = mesh::pick(placed, ray, {.through_transparent = through_transparent});
         if (expected.close_call()) {
             ++close_calls;
             continue;
@@ -338,7 +338,7 @@ TEST_CASE("presentation is not hit, in any mode") {
     REQUIRE(scene);
     const scene::PlacedScene placed = scene::place(*std::move(scene));
     for (const scene::DrawMode mode : {scene::DrawMode::realistic, scene::DrawMode::stylized}) {
-        const auto hit = mesh::pick(placed, {{0.2, 0.2, 5}, {0, 0, -1}}, false, nullptr, mode);
+        const auto hit = mesh::pick(placed, {{0.2, 0.2, 5}, {0, 0, -1}}, {.mode = mode});
         REQUIRE(hit);
         CHECK(placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id == 1);
         CHECK(hit->distance == 5);
@@ -347,7 +347,7 @@ TEST_CASE("presentation is not hit, in any mode") {
 
 TEST_CASE("a triangle: point, normal and distance") {
     const scene::PlacedScene placed = scene_of(corner_triangle());
-    const auto hit = mesh::pick(placed, down_z(0.25, 0.5), false);
+    const auto hit = mesh::pick(placed, down_z(0.25, 0.5));
     REQUIRE(hit);
     CHECK(placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id == 1);
     CHECK(hit->distance == 5);
@@ -362,7 +362,7 @@ TEST_CASE("a triangle: point, normal and distance") {
     CHECK(picked_id(placed, {{-1, 0.25, 0}, {1, 0, 0}}) == -1);     // along its plane
 
     const mesh::Ray slanted = ray_from({3, 2, 7}, glm::dvec3(0.2, 0.3, 0) - glm::dvec3(3, 2, 7));
-    const auto slanted_hit = mesh::pick(placed, slanted, false);
+    const auto slanted_hit = mesh::pick(placed, slanted);
     REQUIRE(slanted_hit);
     check_vector(slanted_hit->point, {0.2, 0.3, 0}, 1e-14);
     CHECK(slanted_hit->distance == doctest::Approx(std::sqrt(2.8 * 2.8 + 1.7 * 1.7 + 49)).epsilon(1e-14));
@@ -377,13 +377,12 @@ TEST_CASE("a box from all sides, and from inside") {
             glm::dvec3 out(0), aside(0.1, 0.2, 0.3);
             out[axis] = sign;
             aside[axis] = 0;
-            const auto outside = mesh::pick(scene_of(box_of(half)), {out * 10.0 + aside, -out}, false);
+            const auto outside = mesh::pick(scene_of(box_of(half)), {out * 10.0 + aside, -out});
             REQUIRE(outside);
             CHECK(outside->distance == 10 - half[axis]);
             CHECK(outside->normal == out);
             CHECK(picked_id(scene_of(box_of(half)), {aside, out}) == -1);
-            const auto inside =
-                mesh::pick(scene_of(box_of(half), glm::dmat4(1), kTwoSided), {aside, out}, false);
+            const auto inside = mesh::pick(scene_of(box_of(half), glm::dmat4(1), kTwoSided), {aside, out});
             REQUIRE(inside);
             CHECK(inside->distance == half[axis]);
             CHECK(inside->normal == -out);
@@ -398,7 +397,7 @@ TEST_CASE("a sphere is hit where its surface is") {
     const double least = std::cos(std::numbers::pi / 128) * std::cos(std::numbers::pi / 128);
     for (int i = 0; i < 2000; ++i) {
         const glm::dvec3 out = random_direction(random);
-        const auto hit = mesh::pick(placed, {glm::dvec3(1, 2, 3) + out * 4.0, -out}, false);
+        const auto hit = mesh::pick(placed, {glm::dvec3(1, 2, 3) + out * 4.0, -out});
         REQUIRE(hit);
         CHECK(4 - hit->distance <= 1 + 1e-12);
         CHECK(4 - hit->distance >= least - 1e-12);
@@ -413,7 +412,7 @@ TEST_CASE("edges and corners belong to the triangle") {
         for (const glm::dvec2 at : {glm::dvec2(0, 0), {1, 0}, {0, 1}, {0.5, 0}, {0, 0.3}, {0.25, 0.75}}) {
             CAPTURE(at.x);
             CAPTURE(at.y);
-            const auto hit = mesh::pick(placed, down_z(far + at.x, at.y), false);
+            const auto hit = mesh::pick(placed, down_z(far + at.x, at.y));
             REQUIRE(hit);
             CHECK(hit->distance == 5);
         }
@@ -435,7 +434,7 @@ TEST_CASE("edges and corners belong to the triangle") {
     // Along a diagonal of the axes the shear is exact.
     const scene::PlacedScene box = scene_of(box_of(glm::dvec3(0.1)));
     for (const glm::dvec3& corner : math::corners(math::Bounds{glm::dvec3(-1), glm::dvec3(1)})) {
-        const auto hit = mesh::pick(box, ray_from(corner * 7.0, -corner), false);
+        const auto hit = mesh::pick(box, ray_from(corner * 7.0, -corner));
         REQUIRE(hit);
         CHECK(hit->distance == doctest::Approx(6.9 * std::sqrt(3)).epsilon(1e-14));
     }
@@ -462,15 +461,14 @@ TEST_CASE("closed bodies have no gaps") {
         const glm::dvec3 middle = from_node({0.1, -0.2, 0.05});
         int missed = 0;
         for (int k = 0; k < 20000; ++k)
-            if (!mesh::pick(placed, {middle, random_direction(random)}, false)) ++missed;
+            if (!mesh::pick(placed, {middle, random_direction(random)})) ++missed;
         CHECK(missed == 0);
         // Straight at all corners, and at all edges, as closely as double can aim.
         const scene::Geometry& geometry = cases[i].geometry;
         for (const glm::uvec3& triangle : geometry.triangles) {
             const glm::dvec3 &a = geometry.positions[triangle.x], &b = geometry.positions[triangle.y];
             for (const double part : {0.0, 0.5, 0.3, 0.77})
-                if (!mesh::pick(placed, ray_from(middle, from_node(a + (b - a) * part) - middle), false))
-                    ++missed;
+                if (!mesh::pick(placed, ray_from(middle, from_node(a + (b - a) * part) - middle))) ++missed;
         }
         CHECK(missed == 0);
     }
@@ -521,7 +519,7 @@ TEST_CASE("whole numbers: an exact count of what lies under a grid of rays") {
                 }
                 CAPTURE(x);
                 CAPTURE(y);
-                const auto hit = mesh::pick(placed, down_z(p.x, p.y, 10), false);
+                const auto hit = mesh::pick(placed, down_z(p.x, p.y, 10));
                 REQUIRE(hit.has_value() == (expected >= 0));
                 if (!hit) continue;
                 CHECK(hit->distance == doctest::Approx(10 - highest).epsilon(1e-14));
@@ -552,7 +550,7 @@ TEST_CASE("a picked point lies under its pixel") {
     int hits = 0;
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
-            const auto hit = mesh::pick(car(), pixel_ray(camera, size, {x, y}), false);
+            const auto hit = mesh::pick(car(), pixel_ray(camera, size, {x, y}));
             if (!hit) continue;
             ++hits;
             const glm::dvec4 clip = clip_from_world * glm::dvec4(hit->point, 1);
@@ -577,7 +575,7 @@ TEST_CASE("sides are those that are drawn") {
         for (const scene::Index material : {kTwoSided, kTwoSidedGlass}) {
             const scene::PlacedScene both = scene_of(corner_triangle(), matrices[i], material);
             for (const mesh::Ray& ray : {at_front, at_back}) {
-                const auto hit = mesh::pick(both, ray, false);
+                const auto hit = mesh::pick(both, ray);
                 REQUIRE(hit);
                 CHECK(hit->distance == 5);
                 CHECK(hit->normal == -ray.direction);
@@ -594,7 +592,7 @@ TEST_CASE("sides are those that are drawn") {
 TEST_CASE("mirrors are hit from both sides, as they are drawn, other reflective parts from the front") {
     const mesh::Ray at_front = down_z(0.25, 0.25), at_back{{0.25, 0.25, -5}, {0, 0, 1}};
     const auto id = [](const scene::PlacedScene& placed, const mesh::Ray& ray, scene::DrawMode mode) {
-        const auto hit = mesh::pick(placed, ray, false, nullptr, mode);
+        const auto hit = mesh::pick(placed, ray, {.mode = mode});
         return hit ? placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id : -1;
     };
     scene::Geometry curved =
@@ -614,7 +612,7 @@ TEST_CASE("flattened parts are hit from both sides") {
         scene_of(box_of({1, 2, 3}), turned_by(0.5, 0.2) * scaled_by({1, 0, 1}) * turned_by(0.1, 0));
     const glm::dvec3 normal(turned_by(0.5, 0.2)[1]);
     for (const double sign : {-1.0, 1.0}) {
-        const auto hit = mesh::pick(flat, {normal * (4 * sign), normal * -sign}, false);
+        const auto hit = mesh::pick(flat, {normal * (4 * sign), normal * -sign});
         REQUIRE(hit);
         CHECK(hit->distance == doctest::Approx(4).epsilon(1e-14));
         check_vector(hit->normal, normal * sign, 1e-14);
@@ -646,7 +644,7 @@ TEST_CASE("far from the origin, tiny and huge") {
             const scene::PlacedScene placed = scene_of(corner_triangle(), matrix);
             const double above = 4 * size;
             const mesh::Ray ray = down_z(place.x + 0.25 * size, place.y + 0.25 * size, place.z + above);
-            const auto hit = mesh::pick(placed, ray, false);
+            const auto hit = mesh::pick(placed, ray);
             REQUIRE(hit);
             // Seen from the ray's origin, which is rounded, nothing else is.
             CHECK(hit->distance == doctest::Approx(ray.origin.z - place.z).epsilon(1e-15));
@@ -663,7 +661,7 @@ TEST_CASE("far from the origin, tiny and huge") {
         far.bounds.add(position);
     }
     const scene::PlacedScene back = scene_of(far, moved_by(glm::dvec3(-1e7)));
-    CHECK(mesh::pick(back, down_z(0, 0, 0.001), false)->distance == 0.001);
+    CHECK(mesh::pick(back, down_z(0, 0, 0.001))->distance == 0.001);
     CHECK(picked_id(back, down_z(1e-9, 1e-9, 0.001)) == 1);
     CHECK(picked_id(back, down_z(-1e-9, 1e-9, 0.001)) == -1);
     // Both are far, and the geometry is not on the grid that double has there.
@@ -674,7 +672,7 @@ TEST_CASE("far from the origin, tiny and huge") {
         near_far.bounds.add(position);
     }
     const scene::PlacedScene moved = scene_of(near_far, moved_by(glm::dvec3(1e7)));
-    const auto hit = mesh::pick(moved, down_z(1e7 + 5.25, 1e7 + 5.25, 1e7 + 6), false);
+    const auto hit = mesh::pick(moved, down_z(1e7 + 5.25, 1e7 + 5.25, 1e7 + 6));
     REQUIRE(hit);
     CHECK(hit->distance == doctest::Approx(1 - 1e-12).epsilon(1e-15));
 }
@@ -755,7 +753,7 @@ TEST_CASE("clear glass, which shows nothing, is passed, but not where all faces 
     CHECK(picked_id(placed, down_z(0.25, 0.25)) == 2);
     CHECK(picked_id(placed, down_z(0.25, 0.25, 0.5)) == 2);
     CHECK(picked_id(placed, down_z(0.25, 0.25), true) == -1);
-    const auto stylized = mesh::pick(placed, down_z(0.25, 0.25), false, nullptr, scene::DrawMode::stylized);
+    const auto stylized = mesh::pick(placed, down_z(0.25, 0.25), {.mode = scene::DrawMode::stylized});
     REQUIRE(stylized);
     CHECK(stylized->distance == 4);
 }
@@ -776,7 +774,7 @@ TEST_CASE("slivers, and triangles without area") {
             const double along = any(random);
             const glm::dvec3 target(turned * glm::dvec4(along, 0.05 + 0.0001 * along, 0, 1));
             const glm::dvec3 from(turned * glm::dvec4(along + any(random) * 0.001, 0.1, 3, 1));
-            const auto hit = mesh::pick(slivers, ray_from(from, target - from), false);
+            const auto hit = mesh::pick(slivers, ray_from(from, target - from));
             REQUIRE(hit);
             CHECK(hit->distance == doctest::Approx(glm::distance(from, target)).epsilon(1e-14 / thin));
         }
@@ -795,7 +793,7 @@ TEST_CASE("slivers, and triangles without area") {
 }
 
 TEST_CASE("nothing there, and numbers that are none") {
-    CHECK_FALSE(mesh::pick(place(scene::Scene()), {}, false));
+    CHECK_FALSE(mesh::pick(place(scene::Scene()), {}));
     CHECK(picked_id(scene_of(scene::Geometry{}), down_z(0, 0)) == -1);
     CHECK(picked_id(scene_of(geometry_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {})), down_z(0.1, 0.1)) == -1);
     Builder without;
@@ -809,10 +807,10 @@ TEST_CASE("nothing there, and numbers that are none") {
         for (int axis = 0; axis < 3; ++axis) {
             mesh::Ray ray = down_z(0.25, 0.25);
             ray.origin[axis] = bad;
-            CHECK_FALSE(mesh::pick(placed, ray, false));
+            CHECK_FALSE(mesh::pick(placed, ray));
             ray = down_z(0.25, 0.25);
             ray.direction[axis] = bad;
-            CHECK_FALSE(mesh::pick(placed, ray, false));
+            CHECK_FALSE(mesh::pick(placed, ray));
         }
         // A bad part hides nothing behind it.
         Builder builder;
@@ -828,7 +826,7 @@ TEST_CASE("nothing there, and numbers that are none") {
         builder.add(3, corner_triangle());
         CHECK(picked_id(builder.placed(), down_z(0.25, 0.25)) == 3);
     }
-    CHECK_FALSE(mesh::pick(placed, {{0.25, 0.25, 5}, {0, 0, 0}}, false));
+    CHECK_FALSE(mesh::pick(placed, {{0.25, 0.25, 5}, {0, 0, 0}}));
     // Beyond what is drawn.
     CHECK(picked_id(scene_of(corner_triangle(), moved_by({0, 0, -1e17})), down_z(0.25, 0.25)) == 1);
     CHECK(picked_id(scene_of(corner_triangle(), moved_by({0, 0, -1e19})), down_z(0.25, 0.25)) == -1);
@@ -842,7 +840,7 @@ TEST_CASE("what is hit follows from the states of the nodes") {
     const auto hit_with = [&](auto change) {
         std::vector<scene::NodeState> states = file.nodes;
         change(states[1]);
-        return mesh::pick(place(file.scene, states), from_behind, false);
+        return mesh::pick(place(file.scene, states), from_behind);
     };
     CHECK(hit_with([](scene::NodeState&) {}));
     CHECK_FALSE(hit_with([](scene::NodeState& state) { state.material = kPlain; }));

@@ -104,9 +104,9 @@ Comparison compare(const scene::PlacedScene& placed, Dice& dice, int rays) {
             result.rays % 5 == 0 ? any() : target + dice.vector(1) * radius * dice.between(0, 40);
         ++result.rays;
         const mesh::Ray ray{from, glm::normalize(target - from)};
-        const auto expected = mesh::pick(placed, ray, false);
+        const auto expected = mesh::pick(placed, ray);
         result.hits += expected.has_value();
-        result.different += !same_bits(expected, mesh::pick(placed, ray, false, &trees));
+        result.different += !same_bits(expected, mesh::pick(placed, ray, {.trees = &trees}));
     }
     return result;
 }
@@ -166,5 +166,5 @@ TEST_CASE("a geometry of few triangles or of numbers that are not finite has no 
     const mesh::PickingTrees trees(placed->scene);
     trees.wait();
     for (scene::Index geometry : {0, 1}) CHECK_FALSE(trees.of(geometry));
-    CHECK(mesh::pick(*placed, {{0.1, 0.2, 5}, {0, 0, -1}}, false, &trees));
+    CHECK(mesh::pick(*placed, {{0.1, 0.2, 5}, {0, 0, -1}}, {.trees = &trees}));
 }

@@ -107,7 +107,7 @@ Study slivers(const Laboratory& laboratory) {
             const double along = (i + 0.5) / kPicks;
             const glm::dvec3 point = a + along * ((b + c) / 2.0 - a);
             const glm::dvec3 direction = glm::normalize(point);
-            missed += !mesh::pick(*scene, {glm::dvec3(0), direction}, false).has_value();
+            missed += !mesh::pick(*scene, {glm::dvec3(0), direction}).has_value();
             missed_in_float += !met_in_float(direction, a, b, c).has_value();
         }
         study.baseline.points.push_back({ratio, 100.0 * missed_in_float / kPicks});
@@ -141,7 +141,7 @@ Study shared_edges(const Laboratory& laboratory) {
                 const glm::dvec3 direction = glm::normalize(glm::mix(a, b, along));
                 ++picks;
                 const double right = static_cast<double>(nearest_of_all(ball, place, direction));
-                const auto hit = mesh::pick(*scene, {glm::dvec3(0), direction}, false);
+                const auto hit = mesh::pick(*scene, {glm::dvec3(0), direction});
                 wrong += !hit || std::abs(hit->distance - right) > 0.01;
                 double nearest = std::numeric_limits<double>::infinity();
                 for (const glm::uvec3& t : ball.triangles)
@@ -178,7 +178,7 @@ Study picks_through_glass(const Laboratory& laboratory) {
             return node == scene::kNone ? -1 : view.scene->scene->nodes()[static_cast<std::size_t>(node)].id;
         };
         const auto picked = [&](const mesh::Ray& ray, bool through) {
-            const auto hit = mesh::pick(*view.scene, ray, through);
+            const auto hit = mesh::pick(*view.scene, ray, {.through_transparent = through});
             return id_of(hit ? hit->node : scene::kNone);
         };
         const std::vector<scene::Index> ids = laboratory.renderer.node_ids(view);  // rows from the bottom up
