@@ -116,9 +116,13 @@ double specular_lobe(double n_h, double n_l, double n_v, double roughness) {
 
 SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit& hit,
                                   const RayDifferential& ray) {
-    const TriangleVertices corners(part, hit.triangle);
     SurfaceInteraction interaction;
     interaction.point = ray.origin + ray.direction * hit.distance;
+    if (hit.cap) {
+        interaction.normal = interaction.smooth_normal = hit.cap->normal;
+        return interaction;
+    }
+    const TriangleVertices corners(part, hit.triangle);
     interaction.texcoord = corners.texcoords * hit.barycentrics;
     interaction.color = corners.colors * hit.barycentrics;
     const glm::dvec3 normal = corners.normals * hit.barycentrics;

@@ -8,8 +8,8 @@
 
 namespace vrut::reference {
 
-/// What a ray sees where it meets a triangle, relative to the eye, and how it changes from a pixel to the
-/// next, to the right and upwards, on the triangle's plane.
+/// What a ray sees where it meets a triangle or a cap, relative to the eye, and how it changes from a pixel
+/// to the next, to the right and upwards, on the triangle's plane.
 struct SurfaceInteraction {
     glm::dvec3 point{0};
     glm::dvec3 normal{0, 0, 1};         ///< unit
@@ -23,6 +23,7 @@ struct SurfaceInteraction {
     std::array<glm::dvec3, 2> dn_dxy{};  ///< of the smooth normal
     std::array<glm::dvec2, 2> duv_dxy{};
 };
+/// A cap has its plane's normal, and neither texture coordinates nor colours.
 SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit& hit,
                                   const RayDifferential& ray);
 

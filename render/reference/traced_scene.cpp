@@ -1,12 +1,14 @@
 #include "reference/traced_scene.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
 
 #include "math/ray_space.hpp"
+#include "mesh/watertight.hpp"
 
 namespace vrut::reference {
 
@@ -64,8 +66,8 @@ std::optional<TracedInstance> instance_of(const plan::View& view, std::size_t no
         const math::Plane& plane = *scene.plane(data->geometry);
         part.mirror = math::transformed(matrix, math::Plane{plane.normal, plane.point - center});
     }
-    const bool singular = !(std::abs(determinant) > 1e-12);
-    part.two_sided = singular || material.two_sided || part.mirror;
+    part.flattened = !(std::abs(determinant) > 1e-12);
+    part.two_sided = part.flattened || material.two_sided || part.mirror;
     part.clockwise = part.two_sided || determinant > 0;
     part.counter_clockwise = part.two_sided || determinant < 0;
     return part;
@@ -85,7 +87,36 @@ void number_coincident(std::vector<TracedInstance>& parts, const scene::PlacedSc
     }
 }
 
-std::vector<TracedInstance> parts_of(const plan::View& view) {
+std::vector<scene::ClipPlane> relative_to_eye(std::vector<scene::ClipPlane> planes, const glm::dvec3& eye) {
+    for (scene::ClipPlane& plane : planes) plane.distance -= glm::dot(plane.normal, eye);
+    return planes;
+}
+
+bool cuts(const scene::ClipPlane& plane, const TracedInstance& part) {
+    const auto is_beyond = [&](const glm::dvec3& position) {
+        return glm::dot(plane.normal, position) > plane.distance;
+    };
+    const auto beyond = std::ranges::count_if(part.positions, is_beyond);
+    return beyond > 0 && static_cast<std::size_t>(beyond) < part.positions.size();
+}
+
+/// Those that a plane with caps cuts, if they are watertight and not flattened.
+void find_capped(std::vector<TracedInstance>& parts, const plan::View& view,
+                 const std::vector<scene::ClipPlane>& planes) {
+    const std::atomic<bool> go_on{false};
+    const scene::Material* const override_material = plan::style_of(view).override_material;
+    std::map<const scene::Geometry*, bool> watertight;
+    for (TracedInstance& part : parts) {
+        const auto is_capped = [&](const scene::ClipPlane& plane) { return plane.caps && cuts(plane, part); };
+        if (part.flattened || std::ranges::none_of(planes, is_capped)) continue;
+        const auto [known, is_new] = watertight.emplace(part.geometry, false);
+        if (is_new) known->second = mesh::is_watertight(*part.geometry, go_on);
+        if (known->second)
+            part.cap_material = override_material ? *override_material : scene::cap_material(*part.material);
+    }
+}
+
+std::vector<TracedInstance> parts_of(const plan::View& view, const std::vector<scene::ClipPlane>& planes) {
     std::vector<TracedInstance> parts;
     const scene::Style style = plan::style_of(view);
     if (!view.scene || !style.faces) return parts;
@@ -99,6 +130,7 @@ std::vector<TracedInstance> parts_of(const plan::View& view) {
     std::sort(parts.begin(), parts.end(),
               [&](const TracedInstance& a, const TracedInstance& b) { return id(a) < id(b); });
     number_coincident(parts, *view.scene);
+    find_capped(parts, view, planes);
     return parts;
 }
 
@@ -125,17 +157,21 @@ std::vector<mesh::Bvh<double>::Box> boxes_of(const std::vector<TracedInstance>& 
     return boxes;
 }
 
-auto triangles_of(const std::vector<TracedInstance>& parts, bool transparent, auto triangles) {
+auto triangles_of(const std::vector<TracedInstance>& parts, const auto& contains, auto triangles) {
     for (std::uint32_t i = 0; i < parts.size(); ++i)
-        for (std::uint32_t k = 0;
-             parts[i].transparent == transparent && k < parts[i].geometry->triangles.size(); ++k)
+        for (std::uint32_t k = 0; contains(parts[i]) && k < parts[i].geometry->triangles.size(); ++k)
             triangles.push_back({i, k});
     return triangles;
 }
 
-/// With the part left to be filled in.
-std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t triangle,
-                                     const math::RaySpace& space, const glm::dvec3& origin) {
+struct Crossing {
+    TriangleHit hit;  ///< with the part left to be filled in
+    bool clockwise = false;
+};
+
+/// `clockwise` and `counter_clockwise`: which triangles are met.
+std::optional<Crossing> cross(const TracedInstance& part, std::uint32_t triangle, const math::RaySpace& space,
+                              const glm::dvec3& origin, bool clockwise, bool counter_clockwise) {
     const glm::uvec3& corners = part.geometry->triangles[triangle];
     const glm::dvec3 a = space.to_ray_space(part.positions[corners.x] - origin);
     const glm::dvec3 b = space.to_ray_space(part.positions[corners.y] - origin);
@@ -143,40 +179,86 @@ std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t t
     const double u = math::edge_function(c, b), v = math::edge_function(a, c), w = math::edge_function(b, a);
     const double u_side = math::edge_side(u, c, b), v_side = math::edge_side(v, a, c),
                  w_side = math::edge_side(w, b, a);
-    const bool clockwise = u_side > 0 && v_side > 0 && w_side > 0;
-    const bool counter_clockwise = u_side < 0 && v_side < 0 && w_side < 0;
-    if (!(clockwise && part.clockwise) && !(counter_clockwise && part.counter_clockwise)) return {};
+    const bool is_clockwise = u_side > 0 && v_side > 0 && w_side > 0;
+    const bool is_counter_clockwise = u_side < 0 && v_side < 0 && w_side < 0;
+    if (!(is_clockwise && clockwise) && !(is_counter_clockwise && counter_clockwise)) return {};
     const double area = u + v + w;
     if (area == 0) return {};
     const double distance = a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / area;
     if (!(distance > 0)) return {};
-    return TriangleHit{0, triangle, distance, glm::dvec3(u, v, w) / area};
+    return Crossing{{0, triangle, distance, glm::dvec3(u, v, w) / area}, is_clockwise};
 }
+
+/// A hit in the kept interval, with the part left to be filled in.
+std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t triangle,
+                                     const math::RaySpace& space, const glm::dvec3& origin,
+                                     const scene::KeptInterval& kept) {
+    const auto crossing = cross(part, triangle, space, origin, part.clockwise, part.counter_clockwise);
+    if (!crossing || crossing->hit.distance < kept.first || crossing->hit.distance > kept.last) return {};
+    return crossing->hit;
+}
+
+bool is_opaque(const TracedInstance& part) { return !part.transparent; }
+bool is_transparent(const TracedInstance& part) { return part.transparent; }
+bool is_capped(const TracedInstance& part) { return part.cap_material.has_value(); }
 
 }  // namespace
 
 bool TriangleHit::is_in_front_of(const TriangleHit& other) const {
-    return std::tie(distance, other.part, other.triangle) < std::tie(other.distance, part, triangle);
+    const bool is_cap = cap.has_value(), other_is_cap = other.cap.has_value();
+    return std::tie(distance, other.part, other_is_cap, other.triangle) <
+           std::tie(other.distance, part, is_cap, triangle);
 }
 
-TracedScene::TriangleSet::TriangleSet(const std::vector<TracedInstance>& parts, bool are_transparent)
-    : triangles(triangles_of(parts, are_transparent, std::vector<TriangleRef>())),
+const scene::Material& material_at(const TracedInstance& part, const TriangleHit& hit) {
+    return hit.cap ? *part.cap_material : *part.material;
+}
+
+TracedScene::TriangleSet::TriangleSet(const std::vector<TracedInstance>& parts,
+                                      bool (*contains)(const TracedInstance&))
+    : triangles(triangles_of(parts, contains, std::vector<TriangleRef>())),
       tree(boxes_of(parts, triangles)) {}
 
 TracedScene::TracedScene(const plan::View& view)
-    : parts_(parts_of(view)), opaque_(parts_, false), transparent_(parts_, true) {}
+    : clip_planes_(relative_to_eye(view.clip_planes, view.camera.eye)),
+      parts_(parts_of(view, clip_planes_)),
+      opaque_(parts_, is_opaque),
+      transparent_(parts_, is_transparent),
+      capped_(parts_, is_capped) {}
+
+std::optional<TriangleHit> TracedScene::cap_hit(const RayDifferential& ray,
+                                                const scene::KeptInterval& kept) const {
+    if (!kept.cap || !clip_planes_[*kept.cap].caps) return {};
+    const math::RaySpace space(ray.direction);
+    std::map<std::uint32_t, int> windings;  // of the parts, where the ray comes through the plane
+    const mesh::SlabRay slabs = slab_ray(ray);
+    const auto entry = [&](const auto& box) { return slabs.entry(box); };
+    capped_.tree.visit(entry, std::numeric_limits<double>::infinity(), [&](std::uint32_t number) {
+        const auto& [part, index] = capped_.triangles[number];
+        const auto crossing = cross(parts_[part], index, space, ray.origin, true, true);
+        if (crossing && crossing->hit.distance > kept.first) windings[part] += crossing->clockwise ? 1 : -1;
+    });
+    const auto is_outside = [](const auto& winding) { return winding.second == 0; };
+    const auto last = std::find_if_not(windings.rbegin(), windings.rend(), is_outside);
+    if (last == windings.rend()) return {};
+    return TriangleHit{
+        last->first, 0, kept.first, {}, TriangleHit::Cap{*kept.cap, clip_planes_[*kept.cap].normal}};
+}
 
 std::optional<TriangleHit> TracedScene::closest_opaque_hit(const RayDifferential& ray,
                                                            std::uint32_t excluded) const {
+    const auto kept = scene::kept_interval(clip_planes_, ray.origin, ray.direction);
+    if (!kept) return {};
     const math::RaySpace space(ray.direction);
     TriangleHit first;
     first.distance = std::numeric_limits<double>::infinity();
+    if (const auto cap = cap_hit(ray, *kept)) first = *cap;
     const mesh::SlabRay slabs = slab_ray(ray);
     const auto entry = [&](const auto& box) { return slabs.entry(box); };
     opaque_.tree.visit(entry, first.distance, [&](std::uint32_t number) {
         const TriangleRef& triangle = opaque_.triangles[number];
         if (is_coincident(triangle.part, excluded)) return;
-        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin);
+        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin, *kept);
         if (!hit) return;
         hit->part = triangle.part;
         if (hit->is_in_front_of(first)) first = *hit;
@@ -189,6 +271,8 @@ std::vector<TriangleHit> TracedScene::transparent_hits_before(const RayDifferent
                                                               const std::optional<TriangleHit>& end,
                                                               std::uint32_t excluded) const {
     std::vector<TriangleHit> hits;
+    const auto kept = scene::kept_interval(clip_planes_, ray.origin, ray.direction);
+    if (!kept) return hits;
     const math::RaySpace space(ray.direction);
     const double farthest = end ? end->distance : std::numeric_limits<double>::infinity();
     const mesh::SlabRay slabs = slab_ray(ray);
@@ -196,7 +280,7 @@ std::vector<TriangleHit> TracedScene::transparent_hits_before(const RayDifferent
     transparent_.tree.visit(entry, farthest, [&](std::uint32_t number) {
         const TriangleRef& triangle = transparent_.triangles[number];
         if (is_coincident(triangle.part, excluded)) return;
-        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin);
+        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin, *kept);
         if (!hit) return;
         hit->part = triangle.part;
         if (!end || hit->is_in_front_of(*end)) hits.push_back(*hit);

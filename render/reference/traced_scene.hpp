@@ -28,26 +28,36 @@ struct TracedInstance {
         1};  ///< cofactors of the node's matrix, by the sign of its determinant, to scale
     /// Which triangles are drawn, by how they turn in a ray's space.
     bool clockwise = false, counter_clockwise = false;
+    bool flattened = false;
     bool two_sided = false;  ///< normals turn to the viewer
     bool transparent = false;
     bool colored = false;  ///< by the colours of its vertices
     std::optional<math::Plane> mirror;
+    std::optional<scene::Material> cap_material;  ///< where a plane with caps cuts it, and it is watertight
     std::uint32_t coincident_group = 0;  ///< the first part of the same geometry under the same matrix
 };
 
 /// Where a ray goes through a triangle. One exactly through an edge or a corner meets one of the triangles
 /// around it that turn the same way, so that a ray meets a pane of glass once and a closed surface has no
-/// gaps.
+/// gaps. Or where it meets the part's cap, which has no triangle.
 struct TriangleHit {
+    struct Cap {
+        std::size_t plane = 0;  ///< of the view's
+        glm::dvec3 normal{0};   ///< the plane's: towards the ray's origin
+    };
     std::uint32_t part = 0, triangle = 0;
     double distance = 0;         ///< along the ray, above 0, in the scene's unit
     glm::dvec3 barycentrics{0};  ///< of the triangle's corners; their sum is 1
+    std::optional<Cap> cap = {};
 
-    /// Equal distance: the higher id is in front; of one geometry the later triangle.
+    /// Equal distance: the higher id is in front; of one geometry the cap, then the later triangle.
     bool is_in_front_of(const TriangleHit& other) const;
 };
 
-/// What a view shows of a scene, to be met by rays.
+/// Of what is hit: the part's own, or its cap's.
+const scene::Material& material_at(const TracedInstance& part, const TriangleHit& hit);
+
+/// What a view shows of a scene, to be met by rays. What lies beyond a clip plane is passed.
 class TracedScene {
 public:
     explicit TracedScene(const plan::View& view);
@@ -70,15 +80,18 @@ private:
     struct TriangleRef {
         std::uint32_t part, index;
     };
-    /// Triangles in a tree.
+    /// Triangles of some parts, in a tree.
     struct TriangleSet {
-        TriangleSet(const std::vector<TracedInstance>& parts, bool transparent);
+        TriangleSet(const std::vector<TracedInstance>& parts, bool (*contains)(const TracedInstance&));
         std::vector<TriangleRef> triangles;
         mesh::Bvh<double> tree;
     };
+    /// The cap of the part of the highest id that is solid where the ray comes through a clip plane.
+    std::optional<TriangleHit> cap_hit(const RayDifferential& ray, const scene::KeptInterval& kept) const;
 
+    std::vector<scene::ClipPlane> clip_planes_;  // relative to the eye
     std::vector<TracedInstance> parts_;
-    TriangleSet opaque_, transparent_;
+    TriangleSet opaque_, transparent_, capped_;
 };
 
 }  // namespace vrut::reference

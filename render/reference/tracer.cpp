@@ -119,8 +119,11 @@ glm::dvec3 Tracer::radiance(const PathRay& path) const {
 
 Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit& hit) const {
     const TracedInstance& part = scene_.parts()[hit.part];
-    const scene::Material& material = *part.material;
+    const scene::Material& material = material_at(part, hit);
     SurfaceInteraction interaction = interaction_of(part, hit, path.ray);
+    if (hit.cap)
+        return {phong(material, glm::dvec3(material.diffuse), view_.light, view_.camera.eye, interaction,
+                      -path.ray.direction)};
     const glm::dvec4 image =
         texel(material.texture, part, interaction, glm::dvec4(glm::dvec3(material.diffuse), 1));
     const glm::dvec3 diffuse(image);
