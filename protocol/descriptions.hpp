@@ -618,6 +618,26 @@ void describe(V& v, const Marker*) {
 }
 
 template <class V>
+void describe(V& v, const SectionState*) {
+    v.writable("normal", &SectionState::normal, kPosition,
+               "Where it leads is cut away; unit, of any length but 0 in a patch. A new plane must have it.");
+    v.writable("distance", &SectionState::distance, Number{-kHuge, kHuge},
+               "Of the plane from the world's origin, along `normal`.");
+    v.writable("on", &SectionState::on, Flag{}, "False: it cuts nothing.");
+    v.writable("caps", &SectionState::caps, Flag{}, "Watertight parts are closed where it cuts them.");
+    v.writable("hatched", &SectionState::hatched, Flag{}, "The caps have lines across.");
+}
+
+template <class V>
+void describe(V& v, const SectionBoxState*) {
+    v.writable("min", &SectionBoxState::min, kPosition, "Its lowest corner; below `max` in each direction.");
+    v.writable("max", &SectionBoxState::max, kPosition, "Its highest corner; at the start around the scene.");
+    v.writable("on", &SectionBoxState::on, Flag{}, "True: nothing outside of the box is shown.");
+    v.writable("caps", &SectionBoxState::caps, Flag{}, "Watertight parts are closed where it cuts them.");
+    v.writable("hatched", &SectionBoxState::hatched, Flag{}, "The caps have lines across.");
+}
+
+template <class V>
 void describe(V& v, const ViewState*) {
     v.writable("eye", &ViewState::eye, kPosition, "Where the camera stands.");
     v.writable("focus", &ViewState::focus, kPosition, "What it looks at.");
@@ -684,6 +704,10 @@ void describe(V& v, const State*) {
                "Signs in the scene, by name.");
     v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}},
                "Saved cameras, by name.");
+    v.writable("sections", &State::sections, SharedTable<Entries<SectionState>>{{{}, kMaxSections, "normal"}},
+               "Planes that cut the scene open, by name.");
+    v.writable("sectionBox", &State::section_box, Section<SectionBoxState>{},
+               "A box that cuts the scene open.");
     v.writable("quality", &State::quality, Section<QualityState>{},
                "How frames are drawn while things move.");
     v.fixed("control", &State::control, Object<ControlState>{}, "Who holds control, and who asks.");

@@ -1,6 +1,7 @@
 #include "state.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "descriptions.hpp"
@@ -18,6 +19,27 @@ void check_key(const std::string& key, const char* path, const SharedMap<Item>& 
     if ((!other || key != other) && !items->contains(key))
         throw BadJson{error_code::unknown_node,
                       "'" + std::string(path) + "': there is no '" + excerpt(key) + "'"};
+}
+
+/// Those that a patch may give any length get their own.
+void check_sections(State& state) {
+    auto sections = *state.sections;
+    for (auto& [name, section] : sections) {
+        const double largest =
+            std::max({std::abs(section.normal.x), std::abs(section.normal.y), std::abs(section.normal.z)});
+        if (largest == 0)
+            throw BadJson{error_code::bad_message,
+                          "'sections." + excerpt(name) + ".normal' is [0, 0, 0]: it must lead somewhere"};
+        const glm::dvec3 scaled = section.normal / largest;
+        // A unit one stays as it is, to the last bit.
+        const double length = glm::length(scaled) * largest;
+        if (std::abs(length - 1) > 1e-15) section.normal = scaled / glm::length(scaled);
+    }
+    state.sections.set(std::move(sections));
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(state.section_box.min[axis] < state.section_box.max[axis]))
+            throw BadJson{error_code::bad_message,
+                          "'sectionBox.min' must be below 'sectionBox.max' in each direction"};
 }
 
 State patched_or_throw(const State& state, const State& starting, const Json& patch) {
@@ -43,6 +65,7 @@ State patched_or_throw(const State& state, const State& starting, const Json& pa
     patch_struct(result, start ? *start : starting, patch, "");
     check_key(result.lights.active, "lights.active", result.lights.items);
     check_key(result.backgrounds.active, "backgrounds.active", result.backgrounds.items, "color");
+    check_sections(result);
     return result;
 }
 
@@ -81,6 +104,7 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
         restore_struct(state, document, "");
         check_key(state.lights.active, "lights.active", state.lights.items);
         check_key(state.backgrounds.active, "backgrounds.active", state.backgrounds.items, "color");
+        check_sections(state);
         if (const auto control = document.find("control"); control != document.end()) {
             if (control->contains("holder"))
                 state.control.holder = kName.read((*control)["holder"], "holder");

@@ -148,6 +148,24 @@ struct Marker {
     bool operator==(const Marker&) const = default;
 };
 
+/// A plane that cuts the scene open: what lies beyond `distance` along `normal`, in the world, is not shown.
+struct SectionState {
+    glm::dvec3 normal{0, 0, 1};  ///< unit
+    double distance = 0;         ///< from the world's origin
+    bool on = true;
+    bool caps = true;      ///< solids are closed where it cuts them
+    bool hatched = false;  ///< their caps
+    bool operator==(const SectionState&) const = default;
+};
+
+/// A box along the world's axes outside of which nothing is shown.
+struct SectionBoxState {
+    glm::dvec3 min{-1}, max{1};
+    bool on = false;
+    bool caps = true, hatched = false;  ///< as SectionState's
+    bool operator==(const SectionBoxState&) const = default;
+};
+
 /// A saved camera.
 struct ViewState {
     glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
@@ -210,6 +228,8 @@ struct State {
     SharedMap<SwingState> swings;  // r: by the node's id
     SharedMap<Marker> markers;
     SharedMap<ViewState> views;
+    SharedMap<SectionState> sections;
+    SectionBoxState section_box;
     QualityState quality;
     ControlState control;
     SharedMap<ClientState> clients;  // r: the first kMaxListedClients
@@ -220,6 +240,8 @@ struct State {
 
 /// Most markers, and most views.
 inline constexpr std::size_t kMaxEntries = 256;
+/// Most planes of sections.
+inline constexpr std::size_t kMaxSections = 6;
 /// Most clients that the state names; `stats` counts all.
 inline constexpr std::size_t kMaxListedClients = 64;
 /// Most notices of the server; older ones are forgotten.

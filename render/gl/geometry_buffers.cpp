@@ -95,17 +95,22 @@ GeometryBufferPool::GeometryBufferPool(const scene::Scene& scene) {
     triangles_at_most_ = 2 * std::min(triangles, kMostVertices);
 }
 
-GpuGeometry GeometryBufferPool::allocate(const GeometrySizes& sizes) {
+GpuGeometry allocate_alone(const GeometrySizes& sizes) {
     GpuGeometry geometry;
     geometry.index_count = static_cast<GLsizei>(sizes.triangles * 3);
+    geometry.buffers = make_geometry_buffers(sizes, false);
+    return geometry;
+}
+
+GpuGeometry GeometryBufferPool::allocate(const GeometrySizes& sizes) {
     // There may be vertices that no triangle uses.
     const bool is_small = sizes.triangles <= plan::kMostTrianglesOfSmall &&
                           sizes.vertices <= 3 * plan::kMostTrianglesOfSmall && !sizes.colors &&
                           !sizes.low_positions;
-    if (is_small)
-        share(sizes, geometry);
-    else
-        geometry.buffers = make_geometry_buffers(sizes, false);
+    if (!is_small) return allocate_alone(sizes);
+    GpuGeometry geometry;
+    geometry.index_count = static_cast<GLsizei>(sizes.triangles * 3);
+    share(sizes, geometry);
     return geometry;
 }
 

@@ -62,6 +62,9 @@ struct GeometrySizes {
 /// Returns a vertex array of a geometry's vertices with these indices.
 GlVertexArray vertex_array_of(const GpuGeometry& geometry, const GlBuffer& indices);
 
+/// Returns a geometry of these sizes with buffers of its own, without contents. Throws OutOfMemory.
+GpuGeometry allocate_alone(const GeometrySizes& sizes);
+
 /// Allocates the buffers of a scene's geometries. Small geometries share buffers, which are freed with the
 /// last of them.
 class GeometryBufferPool {

@@ -125,6 +125,7 @@ bool GpuScene::request(scene::Index geometry, const mesh::DetailLevel& level,
 }
 
 bool GpuScene::request(const plan::DrawItem& item, const std::shared_ptr<const mesh::DetailLevels>& levels) {
+    if (item.cut) return true;
     bool has_textures = true;
     for (const scene::Index texture : {item.texture, item.emissive_texture,
                                        item.occlusion_roughness_metallic_texture, item.normal_texture})
@@ -339,6 +340,7 @@ const GpuGeometry& GpuScene::geometry(scene::Index index) {
 }
 
 const GpuGeometry& GpuScene::geometry(const plan::DrawItem& item) {
+    if (item.cut) return cut(item).faces;
     const ResourceKey key = key_of(Kind::level, item.geometry, item.level ? item.level->number : 0);
     if (item.level && !is_resident(key))
         upload_at_once(key, [&] {

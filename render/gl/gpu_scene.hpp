@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gl/geometry_buffers.hpp"
+#include "gl/gpu_cuts.hpp"
 #include "gl/handles.hpp"
 #include "gl/preparation.hpp"
 #include "gl/upload.hpp"
@@ -20,14 +21,6 @@
 #include "scene/scene.hpp"
 
 namespace vrut::gl {
-
-/// The edges of a geometry's triangles, as lines between its vertices. An edge that several triangles share
-/// is there once, even if their corners have different normals.
-struct GpuEdges {
-    GlBuffer indices;
-    GlVertexArray vertex_array;  ///< with the geometry's vertices
-    GLsizei index_count = 0;
-};
 
 /// A geometry's triangles in another order (plan::TriangleOrder). It never changes, since a draw that is
 /// queued on the GPU may still read it.
@@ -75,11 +68,14 @@ public:
 
     // Lookups. What was not requested before is prepared and copied at once.
     const GpuGeometry& geometry(scene::Index index);
-    /// Returns the item's level, if it has one; else the file's geometry, or level 0, which has the same
-    /// triangles.
+    /// Returns the cap of the item's cut, if it has one; its level, if it has one; else the file's geometry,
+    /// or level 0, which has the same triangles.
     const GpuGeometry& geometry(const plan::DrawItem& item);
-    /// Null while they are not resident.
+    /// An edge that several triangles share is there once, even if their corners have different normals. Null
+    /// while they are not resident.
     const GpuEdges* edges(scene::Index index) const;
+    /// Of an item with a cut.
+    const GpuEdges& cut_lines(const plan::DrawItem& item) { return cut(item).lines; }
     /// Returns the item's triangles in its order, which is not null. Items of the same geometry and order
     /// share them. Beyond kMaxSortedBytes the least recently used are freed. The result is valid until the
     /// next call.
@@ -132,6 +128,9 @@ private:
     struct ByOrder {
         bool operator()(const GpuTriangles* a, const GpuTriangles* b) const;
     };
+    const GpuCut& cut(const plan::DrawItem& item) {
+        return cuts_.at(item.cut, read_geometry(item.geometry), scene_->needs_double_single(item.geometry));
+    }
     const std::vector<glm::uvec3>& uploaded_triangles(scene::Index geometry);
     GpuTriangles upload_sorted(const plan::DrawItem& item);
 
@@ -143,6 +142,7 @@ private:
     std::map<std::array<scene::Index, 6>, GlTexture> cube_maps_;
     std::map<std::array<scene::Index, 6>, GpuEnvironmentLight> environment_lights_;
     bool lit_by_environment_ = false;  // some material needs them
+    GpuCuts cuts_;
     GeometryBufferPool buffer_pool_;
     int uploads_ = 0;
 

@@ -60,6 +60,9 @@ bool is_reachable(const SurfaceVariant& variant) {
         (variant.textured || variant.colored || variant.emissive || varied || variant.environment))
         return false;
     if (variant.kind == Kind::mirror && variant.environment && !variant.metallic_roughness) return false;
+    if (variant.cap && (variant.kind != Kind::faces || variant.textured || variant.environment ||
+                        variant.colored || variant.emissive || varied || variant.instanced))
+        return false;
     if (variant.anisotropic && !(variant.textured || variant.mapped)) return false;
     if (variant.metallic_roughness && !variant.environment) return false;
     if (variant.coated && !variant.metallic_roughness) return false;
@@ -140,6 +143,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     if (variant.textured && !(textured && features.texcoords)) return false;
     if (variant.environment && !((reflective || variant.metallic_roughness) && features.environment_map))
         return false;
+    if (variant.cap) return false;
     // A mirror clips what it shows, which lies beside the eye that carries the headlight.
     if (variant.clip_planes == 0) return true;
     return variant.clip_planes == 1 && features.mirrors() && variant.light != Light::headlight &&
@@ -171,7 +175,8 @@ std::vector<PlainVariant> reachable_plain_variants() {
     std::vector<PlainVariant> variants;
     for (const PlainVariant::Output output : {PlainVariant::Output::color, PlainVariant::Output::node_id})
         for (const bool double_single : {false, true})
-            for (const int planes : kClipCapacities) variants.push_back({output, double_single, planes});
+            for (const int planes : kClipCapacities)
+                for (const bool cap : {false, true}) variants.push_back({output, double_single, planes, cap});
     return variants;
 }
 
@@ -182,7 +187,7 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
                 for (const int clip_planes : kClipCapacities)
-                    for (int bits = 0; bits < 1024; ++bits) {
+                    for (int bits = 0; bits < 2048; ++bits) {
                         const SurfaceVariant variant{kind,
                                                      light,
                                                      (bits & 1) != 0,
@@ -196,7 +201,8 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
                                                      (bits & 64) != 0,
                                                      (bits & 128) != 0,
                                                      (bits & 256) != 0,
-                                                     (bits & 512) != 0};
+                                                     (bits & 512) != 0,
+                                                     (bits & 1024) != 0};
                         if (is_reachable(variant)) variants.push_back(variant);
                     }
     return variants;
@@ -224,6 +230,7 @@ ProgramSource source_of(const PlainVariant& variant) {
     std::vector<std::string_view> defines;
     if (variant.double_single) defines.push_back("DOUBLE_SINGLE");
     if (variant.clip_planes > 0) defines.push_back(clip_define(variant.clip_planes));
+    if (variant.cap) defines.push_back("CAP");
     const bool color = variant.output == PlainVariant::Output::color;
     return {shader_source("solid_color.vert", defines),
             shader_source(color ? "solid_color.frag" : "node_id.frag", defines)};
@@ -249,6 +256,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.kind == Kind::per_pixel_glass, "LAYERED");
     define(variant.kind == Kind::mirror, "MIRROR");
     define(variant.clip_planes > 0, clip_define(variant.clip_planes));
+    define(variant.cap, "CAP");
     define(variant.double_single, "DOUBLE_SINGLE");
     define(variant.anisotropic, "ANISOTROPIC");
     const bool at_vertex = variant.lit_at == plan::Methods::Lighting::vertex;
@@ -313,7 +321,8 @@ bool Programs::compile_step(const scene::Scene& scene, const plan::Methods& meth
     for (std::size_t i = 0; i < kFixedPrograms; ++i)
         if (!compile_next(static_cast<FixedProgram>(i))) return false;
     for (const PlainVariant& variant : reachable_plain_variants())
-        if (variant.clip_planes == 0 && variant.double_single <= double_single && !compile_next(variant))
+        if (variant.clip_planes == 0 && !variant.cap && variant.double_single <= double_single &&
+            !compile_next(variant))
             return false;
     return std::ranges::all_of(surface_variants(scene, methods), compile_next);
 }

@@ -41,6 +41,7 @@ struct PlainVariant {
     Output output = Output::color;
     bool double_single = false;  ///< GpuGeometry::is_double_single()
     int clip_planes = 0;         ///< clip_capacity()
+    bool cap = false;            ///< at the depth of a clip plane
 
     auto operator<=>(const PlainVariant&) const = default;
 };
@@ -71,12 +72,13 @@ struct SurfaceVariant {
     bool metallic_roughness = false;  ///< lit by it, not by Phong's equation
     bool mapped = false;              ///< plan::is_mapped()
     bool coated = false;              ///< mirrors the environment above metal and roughness
+    bool cap = false;                 ///< faces at the depth of a clip plane
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
             return std::tie(v.kind, v.light, v.textured, v.environment, v.clip_planes, v.lit_at,
                             v.double_single, v.anisotropic, v.instanced, v.colored, v.emissive,
-                            v.metallic_roughness, v.mapped, v.coated);
+                            v.metallic_roughness, v.mapped, v.coated, v.cap);
         };
         return key(*this) < key(other);
     }

@@ -221,6 +221,9 @@ void SampleDrawing::draw_items(const plan::DrawCommand& command, std::span<const
             return passes.transparent.draw(items, *step.scene, passes.programs, step.stats);
         case Kind::edges:
             return passes.edges.draw(items, *step.scene, step.style, clip, passes.programs, step.stats);
+        case Kind::cut_lines:
+            return passes.edges.draw_cuts(items, *step.scene, camera_in(command.mirror).clip_from_view,
+                                          step.stats);
         case Kind::edges_overlay:
             return passes.edges.draw_overlay(items, *step.scene, scene::kSelection, clip, step.stats);
         case Kind::reset_depth:

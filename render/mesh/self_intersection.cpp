@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@ namespace {
 
 /// Of the radius: what lies closer together touches.
 constexpr double kTouching = 1e-10;
+/// Of the largest coordinate: what rounding to double may have moved together, or through each other.
+constexpr double kCoordinateRounding = 4 * std::numeric_limits<double>::epsilon();
 /// Squared sine of the angle between two neighbours that lie folded on each other.
 constexpr double kFolded = 1e-18;
 /// So few triangles are compared pair by pair.
@@ -99,7 +102,9 @@ public:
             for (int k = 0; k < 3; ++k) box.add(positions[t[k]]);
             bounds.add(box);
         }
-        touching_ = kTouching * bounds.radius();
+        const glm::dvec3 farthest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+        touching_ = std::max(kTouching * bounds.radius(),
+                             kCoordinateRounding * std::max({farthest.x, farthest.y, farthest.z}));
         budget_ = kBudgetPerTriangle * triangles.size() + kBudget;
     }
 

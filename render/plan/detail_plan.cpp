@@ -78,7 +78,7 @@ private:
     }
 
     void select(DrawItem& item, const FullDetailItems& full_detail) const {
-        if (!has_levels(item)) return;
+        if (item.cut || !has_levels(item)) return;
         const auto [first, last] = full_detail.equal_range(item.geometry);
         const bool is_full_detail = !(view_.detail > 0) || std::any_of(first, last, [&](const auto& other) {
             return other.second == item.view_from_node;

@@ -20,6 +20,7 @@ void add_draw_lists(Commands& commands, const DrawLists& lists, const MirrorItem
         add_draw_lists(commands, within.reflected, &within);
         commands.push_back({Kind::close_mirror, &within});
     }
+    add(commands, Kind::cut_lines, mirror, lists.cut_lines);
     for (const TransparentGroup& group : lists.transparent)
         add(commands, group.exact ? Kind::per_pixel_glass : Kind::sorted_glass, mirror, group.items);
 }

@@ -15,6 +15,7 @@ struct DrawCommand {
         opaque,           ///< faces
         query_boxes,      ///< begins occlusion queries of opaque items, culled or not
         revealed,         ///< faces of culled items that are visible
+        cut_lines,        ///< lines of items' cuts
         find_mirrors,     ///< begins occlusion queries of `mirrors`; commands of hidden ones are skipped
         open_mirror,      ///< clears the target of `mirror`, and draws its background
         close_mirror,     ///< draws its surface

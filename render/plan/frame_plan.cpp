@@ -7,6 +7,7 @@
 
 #include "math/frustum.hpp"
 #include "mesh/simplification.hpp"
+#include "plan/cut_cache.hpp"
 #include "plan/detail_plan.hpp"
 #include "plan/draw_budget.hpp"
 #include "plan/draw_groups.hpp"
@@ -45,6 +46,78 @@ void add_item(const scene::PlacedScene& placed, scene::Index node, const glm::dm
     const bool both = is_flattened(determinant) || mirror || scene.material(item.material).two_sided;
     item.cull_mode = both ? CullMode::none : CullMode::back;
     item.mirrored = determinant < 0;
+}
+
+enum class Side { shown, hidden, crossed };
+
+/// Where the item's box lies; `equation` as scene::clip_equation() returns it.
+Side side_of(const DrawItem& item, const scene::Scene& scene, const glm::dvec4& equation) {
+    const math::Bounds& box = scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+    const double middle = glm::dot(equation, glm::dvec4(box.center(), 1));
+    const double reach = glm::dot(glm::abs(glm::dvec3(equation)), box.half_extent());
+    if (middle + reach < 0) return Side::hidden;
+    return middle - reach < 0 ? Side::crossed : Side::shown;
+}
+
+/// Returns false if the view's clip planes leave nothing of the item.
+bool clip(DrawItem& item, const View& view) {
+    if (view.scene->scene->is_presentation(item.node)) return true;
+    for (const scene::ClipPlane& plane : view.clip_planes) {
+        const glm::dvec4 equation =
+            scene::clip_equation(plane, view.scene->world[static_cast<std::size_t>(item.node)]);
+        const Side side = side_of(item, *view.scene->scene, equation);
+        if (side == Side::hidden) return false;
+        if (side == Side::crossed) item.clip_planes.push_back(equation);
+    }
+    return true;
+}
+
+/// Where the dot product with (point, 1) is 0. The same for all parts, to the last bit.
+glm::dvec4 in_view(const scene::ClipPlane& plane, const scene::Camera& camera) {
+    const glm::dvec3 normal = glm::dmat3(scene::view_from_world(camera)) * plane.normal;
+    return {normal, glm::dot(plane.normal, camera.eye) - plane.distance};
+}
+
+/// Of an item that planes cross: a cut for each, which the others clip.
+void add_cuts(const DrawItem& item, const View& view, CutCache& cuts, DrawBudget& budget,
+              std::vector<DrawItem>& added) {
+    for (std::size_t i = 0; i < view.clip_planes.size(); ++i) {
+        const glm::dvec4 equation =
+            scene::clip_equation(view.clip_planes[i], view.scene->world[static_cast<std::size_t>(item.node)]);
+        if (side_of(item, *view.scene->scene, equation) != Side::crossed) continue;
+        DrawItem cut;
+        cut.cut = cuts.find(view, item.node, i, budget);
+        if (cut.cut->cut.contours.empty()) continue;
+        cut.node = item.node;
+        cut.geometry = item.geometry;
+        cut.material = item.material;
+        cut.view_from_node = item.view_from_node;
+        cut.mirrored = item.mirrored;
+        cut.clip_planes = item.clip_planes;
+        std::erase(cut.clip_planes, equation);
+        cut.cut_plane = in_view(view.clip_planes[i], view.camera);
+        added.push_back(std::move(cut));
+    }
+}
+
+/// Puts cuts behind the items of the same nodes, in whose order they are.
+void insert_cuts(std::vector<DrawItem>& items, std::vector<DrawItem> cuts) {
+    if (cuts.empty()) return;
+    std::vector<DrawItem> merged;
+    merged.reserve(items.size() + cuts.size());
+    auto cut = cuts.begin();
+    for (DrawItem& item : items) {
+        merged.push_back(std::move(item));
+        for (; cut != cuts.end() && cut->node == merged.back().node; ++cut) merged.push_back(std::move(*cut));
+    }
+    items = std::move(merged);
+}
+
+std::vector<DrawItem> cuts_among(const std::vector<DrawItem>& items) {
+    std::vector<DrawItem> cuts;
+    for (const DrawItem& item : items)
+        if (item.cut) cuts.push_back(item);
+    return cuts;
 }
 
 /// Finds what their surfaces show besides their materials' own colours.
@@ -91,10 +164,10 @@ bool has_cube_map(const scene::Scene& scene) {
 DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, TransparencyCache& shapes) {
     const scene::PlacedScene& placed = *view.scene;
     const scene::Scene& scene = *placed.scene;
-    const auto is_opaque = [&](const DrawItem& item) {
-        return !scene.is_transparent(scene.material(item.material), item.geometry);
-    };
+    const auto is_opaque = [&](const DrawItem& item) { return !is_transparent(item, scene); };
     DrawLists lists;
+    lists.cut_lines = cuts_among(items);
+    std::erase_if(items, [](const DrawItem& item) { return item.cut && item.cut->cut.triangles.empty(); });
     if (style_of(view).override_material || std::all_of(items.begin(), items.end(), is_opaque)) {
         lists.opaque = std::move(items);
         return lists;
@@ -175,11 +248,21 @@ std::vector<DrawItem> visible_items(const View& view) {
         if ((shown.empty() || shown[static_cast<std::size_t>(node)]) &&
             (style.presentation || !placed.scene->is_presentation(node)))
             add_item(placed, node, view_matrix, style, items);
+    if (!view.clip_planes.empty()) std::erase_if(items, [&](DrawItem& item) { return !clip(item, view); });
     if (style.faces && !style.override_material) assign_surfaces(items, view);
     return items;
 }
 
+const scene::Material& material_of(const DrawItem& item, const scene::Scene& scene) {
+    return item.cut ? item.cut->material : scene.material(item.material);
+}
+
+bool is_transparent(const DrawItem& item, const scene::Scene& scene) {
+    return !item.cut && scene.is_transparent(scene.material(item.material), item.geometry);
+}
+
 std::size_t triangle_count(const DrawItem& item, const scene::Scene& scene) {
+    if (item.cut) return item.cut->cut.triangles.size();
     return item.level ? item.level->triangles.size()
                       : scene.geometries()[static_cast<std::size_t>(item.geometry)].triangles.size();
 }
@@ -203,7 +286,8 @@ bool has_exact_group(const DrawLists& lists) {
                        [](const MirrorItem& mirror) { return has_exact_group(mirror.reflected); });
 }
 
-void FramePlanner::find_items(const View& view) {
+void FramePlanner::find_items(const View& view, CutCache& cuts) {
+    cuts.begin_image();
     const scene::PlacedScene& placed = *view.scene;
     items_ = visible_items(view);
     if (std::any_of(items_.begin(), items_.end(), [&](const DrawItem& item) {
@@ -212,10 +296,28 @@ void FramePlanner::find_items(const View& view) {
         unculled_items_ = items_;  // a mirror can show items outside of the frustum
     cull_frustum(items_, view);
     plan_.markers = markers_of(view, scene::view_from_world(view.camera));
+}
 
+/// Of items, and then of what mirrors may show.
+bool FramePlanner::find_cuts(const View& view, CutCache& cuts, DrawBudget& budget) {
+    if (view.clip_planes.empty()) return true;
+    const std::size_t count = items_.size() + unculled_items_.size();
+    for (; cuts_found_ < count && !budget.is_spent(); ++cuts_found_) {
+        const bool culled = cuts_found_ >= items_.size();
+        const DrawItem& item = culled ? unculled_items_[cuts_found_ - items_.size()] : items_[cuts_found_];
+        if (!item.clip_planes.empty()) add_cuts(item, view, cuts, budget, culled ? unculled_cuts_ : cuts_);
+    }
+    return cuts_found_ == count;
+}
+
+void FramePlanner::sort_items(const View& view) {
+    insert_cuts(items_, std::move(cuts_));
+    insert_cuts(unculled_items_, std::move(unculled_cuts_));
+    const scene::Style style = style_of(view);
+    if (!style.faces) plan_.scene.cut_lines = cuts_among(items_);
     if (view.selected != scene::kNone)
-        plan_.selected = extract(items_, scene::subtree(*placed.scene, view.selected));
-    if (style_of(view).edges) plan_.edges = items_;
+        plan_.selected = extract(items_, scene::subtree(*view.scene->scene, view.selected));
+    if (style.edges) plan_.edges = items_;
 }
 
 /// Of glass, which will be put in order; what only mirrors show is left to that.
@@ -228,8 +330,7 @@ bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, Draw
     for (; shapes_found_ < count && !budget.is_spent(); ++shapes_found_) {
         const DrawItem& item = shapes_found_ < items_.size() ? items_[shapes_found_]
                                                              : plan_.selected[shapes_found_ - items_.size()];
-        if (scene.is_transparent(scene.material(item.material), item.geometry))
-            budget.spend(shapes.find(item));
+        if (is_transparent(item, scene)) budget.spend(shapes.find(item));
     }
     return shapes_found_ == count;
 }
@@ -244,21 +345,26 @@ void FramePlanner::find_draw_lists(const View& view, TransparencyCache& shapes,
     if (!style_of(view).edges) group_for_draws(plan_.scene.opaque, *view.scene, view.camera.eye);
 }
 
-bool FramePlanner::step(const View& view, TransparencyCache& shapes, DrawBudget& budget,
+bool FramePlanner::step(const View& view, const PlanCaches& caches, DrawBudget& budget,
                         const IsResident& is_resident) {
     while (stage_ != PlanStage::done && !budget.is_spent()) {
         switch (stage_) {
             case PlanStage::items:
                 budget.spend(kListed * static_cast<std::int64_t>(view.scene->nodes.size()));
-                find_items(view);
+                find_items(view, caches.cuts);
+                stage_ = PlanStage::cuts;
+                break;
+            case PlanStage::cuts:
+                if (!find_cuts(view, caches.cuts, budget)) break;
+                sort_items(view);
                 stage_ = PlanStage::shapes;
                 break;
             case PlanStage::shapes:
-                if (find_shapes(view, shapes, budget)) stage_ = PlanStage::draw_lists;
+                if (find_shapes(view, caches.shapes, budget)) stage_ = PlanStage::draw_lists;
                 break;
             case PlanStage::draw_lists:
                 budget.spend(kOrdered * static_cast<std::int64_t>(items_.size() + plan_.selected.size()));
-                find_draw_lists(view, shapes, is_resident);
+                find_draw_lists(view, caches.shapes, is_resident);
                 stage_ = PlanStage::done;
                 break;
             case PlanStage::done:
@@ -271,15 +377,20 @@ bool FramePlanner::step(const View& view, TransparencyCache& shapes, DrawBudget&
 FramePlan plan_frame(const View& view) {
     if (!view.scene) return {};
     TransparencyCache shapes(*view.scene->scene);
+    CutCache cuts;
     FramePlanner planner;
-    for (DrawBudget budget(false); !planner.step(view, shapes, budget);) budget = DrawBudget(false);
+    for (DrawBudget budget(false); !planner.step(view, {shapes, cuts}, budget);) budget = DrawBudget(false);
     return planner.plan();
 }
 
-std::vector<DrawItem> visible_faces(const View& view) {
+std::vector<DrawItem> visible_faces(const View& view, CutCache& cuts) {
     if (!view.scene || !style_of(view).faces) return {};
-    std::vector<DrawItem> items = visible_items(view);
+    std::vector<DrawItem> items = visible_items(view), caps;
     cull_frustum(items, view);
+    DrawBudget unlimited(false);
+    for (const DrawItem& item : items)
+        if (!item.clip_planes.empty()) add_cuts(item, view, cuts, unlimited, caps);
+    insert_cuts(items, std::move(caps));
     return items;
 }
 

@@ -20,7 +20,9 @@ namespace vrut::plan {
 /// front faces; it is still lit as two-sided.
 enum class CullMode { back, none, hidden_back };
 
-/// One geometry node to be drawn.
+struct CutSurface;
+
+/// One geometry node to be drawn, or its cut by a clip plane.
 struct DrawItem {
     scene::Index node = scene::kNone, geometry = scene::kNone, material = scene::kNone;
     glm::dmat4 view_from_node{1};
@@ -36,6 +38,11 @@ struct DrawItem {
     bool environment = false;  ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;
+    /// The item's faces are the cap of this cut, with its material; null: the geometry's. The bounds of the
+    /// geometry hold for both.
+    std::shared_ptr<const CutSurface> cut;
+    /// The plane of the cut in view space: its points' dot product with (point, 1) is 0.
+    glm::dvec4 cut_plane{0};
     /// In node space: only points whose dot products with all of them are not negative are drawn.
     std::vector<glm::dvec4> clip_planes;
     /// The triangles back to front, numbered as in TriangleOrder; null: in file order.
@@ -61,9 +68,15 @@ struct TransparentGroup {
 
 struct MirrorItem;
 
+/// The material of the item's faces.
+const scene::Material& material_of(const DrawItem& item, const scene::Scene& scene);
+/// Returns true if something can be seen through the item's faces.
+bool is_transparent(const DrawItem& item, const scene::Scene& scene);
+
 /// Faces that are drawn with one set of camera matrices, in this order.
 struct DrawLists {
     std::vector<DrawItem> opaque;               ///< by rising id, or as group_for_draws() leaves them
+    std::vector<DrawItem> cut_lines;            ///< items with a cut, whose lines are drawn on them
     std::vector<MirrorItem> mirrors;            ///< by rising id
     std::vector<TransparentGroup> transparent;  ///< back to front
 };
@@ -98,30 +111,41 @@ struct FramePlan {
 /// Returns true if a geometry's level of detail is on the GPU. Empty: all levels may be used.
 using IsResident = std::function<bool(scene::Index, const mesh::DetailLevel&)>;
 
+class CutCache;
 class TransparencyCache;
 class DrawBudget;
+
+/// What is computed for one image and serves later ones of the same scene.
+struct PlanCaches {
+    TransparencyCache& shapes;
+    CutCache& cuts;
+};
 
 /// Computes the plan of a view in steps. The plan is empty if the view has no scene.
 class FramePlanner {
 public:
-    /// Continues until `work` is spent. Returns true when the plan is complete. All calls must pass the same
-    /// view; `shapes` must belong to its scene and caches what is computed for later frames.
-    /// An item's level is one for which `is_resident` returns true.
-    bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget,
+    /// Continues until `budget` is spent. Returns true when the plan is complete. All calls must pass the
+    /// same view; the caches must belong to its scene. An item's level is one for which `is_resident` returns
+    /// true.
+    bool step(const View& view, const PlanCaches& caches, DrawBudget& budget,
               const IsResident& is_resident = {});
     /// The complete plan. Its address does not change.
     const FramePlan& plan() const { return plan_; }
 
 private:
-    enum class PlanStage { items, shapes, draw_lists, done };
-    void find_items(const View& view);
+    enum class PlanStage { items, cuts, shapes, draw_lists, done };
+    void find_items(const View& view, CutCache& cuts);
+    bool find_cuts(const View& view, CutCache& cuts, DrawBudget& budget);
+    void sort_items(const View& view);
     bool find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget);
     void find_draw_lists(const View& view, TransparencyCache& shapes, const IsResident& is_resident);
 
     PlanStage stage_ = PlanStage::items;
     std::vector<DrawItem> items_,
-        unculled_items_;            // in the frustum, not selected; and those that mirrors may show
-    std::size_t shapes_found_ = 0;  // the number of items whose shapes are computed
+        unculled_items_;  // in the frustum, not selected; and those that mirrors may show
+    std::vector<DrawItem> cuts_, unculled_cuts_;  // of these
+    std::size_t cuts_found_ = 0;                  // the number of items whose cuts are computed
+    std::size_t shapes_found_ = 0;                // the number of items whose shapes are computed
     FramePlan plan_;
 };
 
@@ -131,8 +155,8 @@ FramePlan plan_frame(const View& view);
 /// Returns the items of all visible faces, opaque or not, inside of the frustum or outside, by rising id.
 std::vector<DrawItem> visible_items(const View& view);
 
-/// Returns the items of all faces inside of the frustum, opaque or not, by rising id.
-std::vector<DrawItem> visible_faces(const View& view);
+/// Returns the items of all faces inside of the frustum, opaque or not, by rising id, and their cuts.
+std::vector<DrawItem> visible_faces(const View& view, CutCache& cuts);
 
 /// Returns the radius in pixels of a marker in an image of that height.
 double marker_radius(int picture_height);

@@ -149,6 +149,7 @@ std::optional<DrawItem> reflected(const DrawItem& item, const scene::Scene& scen
     DrawItem image = item;
     image.view_from_node = mirror.reflection * matrix;
     image.mirrored = !item.mirrored;
+    image.cut_plane = item.cut_plane * mirror.reflection;
     if (middle - reach < margin) {
         distance.w -= margin;
         image.clip_planes.push_back(distance);
@@ -176,7 +177,7 @@ std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const math::Plan
 }  // namespace
 
 std::optional<math::Plane> mirror_plane(const scene::Scene& scene, const DrawItem& item) {
-    if (!scene.is_mirror(scene.material(item.material), item.geometry)) return {};
+    if (item.cut || !scene.is_mirror(scene.material(item.material), item.geometry)) return {};
     return transformed(item.view_from_node, *scene.plane(item.geometry));
 }
 

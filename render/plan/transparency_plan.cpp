@@ -395,6 +395,7 @@ void mark_occluded_by_coincident(std::vector<DrawItem>& items, std::span<const D
     for (DrawItem& item : items) sorted_items.push_back(&item);
     std::sort(sorted_items.begin(), sorted_items.end(), before);
     for (const DrawItem& other : others) {
+        if (other.cut) continue;
         const auto [first, last] = std::equal_range(sorted_items.begin(), sorted_items.end(), &other, before);
         for (auto match = first; match != last; ++match)
             if (id(other) > id(**match)) (*match)->occluded_by_coincident = true;

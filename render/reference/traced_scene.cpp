@@ -61,6 +61,7 @@ std::optional<TracedInstance> instance_of(const plan::View& view, std::size_t no
     const scene::Material* const override_material = plan::style_of(view).override_material;
     part.material = override_material ? override_material : &material;
     part.transparent = !override_material && scene.is_transparent(material, data->geometry);
+    part.clipped = !scene.is_presentation(part.node);
     part.colored = !override_material && !geometry.colors.empty();
     if (!override_material && scene.is_mirror(material, data->geometry)) {
         const math::Plane& plane = *scene.plane(data->geometry);
@@ -108,7 +109,7 @@ void find_capped(std::vector<TracedInstance>& parts, const plan::View& view,
     std::map<const scene::Geometry*, bool> watertight;
     for (TracedInstance& part : parts) {
         const auto is_capped = [&](const scene::ClipPlane& plane) { return plane.caps && cuts(plane, part); };
-        if (part.flattened || std::ranges::none_of(planes, is_capped)) continue;
+        if (part.flattened || !part.clipped || std::ranges::none_of(planes, is_capped)) continue;
         const auto [known, is_new] = watertight.emplace(part.geometry, false);
         if (is_new) known->second = mesh::is_watertight(*part.geometry, go_on);
         if (known->second)
@@ -189,11 +190,12 @@ std::optional<Crossing> cross(const TracedInstance& part, std::uint32_t triangle
     return Crossing{{0, triangle, distance, glm::dvec3(u, v, w) / area}, is_clockwise};
 }
 
-/// A hit in the kept interval, with the part left to be filled in.
+/// A hit in the kept interval, if the part is clipped, with the part left to be filled in.
 std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t triangle,
                                      const math::RaySpace& space, const glm::dvec3& origin,
                                      const scene::KeptInterval& kept) {
     const auto crossing = cross(part, triangle, space, origin, part.clockwise, part.counter_clockwise);
+    if (crossing && !part.clipped) return crossing->hit;
     if (!crossing || crossing->hit.distance < kept.first || crossing->hit.distance > kept.last) return {};
     return crossing->hit;
 }
@@ -226,6 +228,11 @@ TracedScene::TracedScene(const plan::View& view)
       transparent_(parts_, is_transparent),
       capped_(parts_, is_capped) {}
 
+scene::KeptInterval TracedScene::kept_of(const RayDifferential& ray) const {
+    constexpr scene::KeptInterval kNothing{1, 0, {}};
+    return scene::kept_interval(clip_planes_, ray.origin, ray.direction).value_or(kNothing);
+}
+
 std::optional<TriangleHit> TracedScene::cap_hit(const RayDifferential& ray,
                                                 const scene::KeptInterval& kept) const {
     if (!kept.cap || !clip_planes_[*kept.cap].caps) return {};
@@ -247,18 +254,17 @@ std::optional<TriangleHit> TracedScene::cap_hit(const RayDifferential& ray,
 
 std::optional<TriangleHit> TracedScene::closest_opaque_hit(const RayDifferential& ray,
                                                            std::uint32_t excluded) const {
-    const auto kept = scene::kept_interval(clip_planes_, ray.origin, ray.direction);
-    if (!kept) return {};
+    const scene::KeptInterval kept = kept_of(ray);
     const math::RaySpace space(ray.direction);
     TriangleHit first;
     first.distance = std::numeric_limits<double>::infinity();
-    if (const auto cap = cap_hit(ray, *kept)) first = *cap;
+    if (const auto cap = cap_hit(ray, kept)) first = *cap;
     const mesh::SlabRay slabs = slab_ray(ray);
     const auto entry = [&](const auto& box) { return slabs.entry(box); };
     opaque_.tree.visit(entry, first.distance, [&](std::uint32_t number) {
         const TriangleRef& triangle = opaque_.triangles[number];
         if (is_coincident(triangle.part, excluded)) return;
-        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin, *kept);
+        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin, kept);
         if (!hit) return;
         hit->part = triangle.part;
         if (hit->is_in_front_of(first)) first = *hit;
@@ -271,8 +277,7 @@ std::vector<TriangleHit> TracedScene::transparent_hits_before(const RayDifferent
                                                               const std::optional<TriangleHit>& end,
                                                               std::uint32_t excluded) const {
     std::vector<TriangleHit> hits;
-    const auto kept = scene::kept_interval(clip_planes_, ray.origin, ray.direction);
-    if (!kept) return hits;
+    const scene::KeptInterval kept = kept_of(ray);
     const math::RaySpace space(ray.direction);
     const double farthest = end ? end->distance : std::numeric_limits<double>::infinity();
     const mesh::SlabRay slabs = slab_ray(ray);
@@ -280,7 +285,7 @@ std::vector<TriangleHit> TracedScene::transparent_hits_before(const RayDifferent
     transparent_.tree.visit(entry, farthest, [&](std::uint32_t number) {
         const TriangleRef& triangle = transparent_.triangles[number];
         if (is_coincident(triangle.part, excluded)) return;
-        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin, *kept);
+        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin, kept);
         if (!hit) return;
         hit->part = triangle.part;
         if (!end || hit->is_in_front_of(*end)) hits.push_back(*hit);

@@ -29,6 +29,7 @@ struct TracedInstance {
     /// Which triangles are drawn, by how they turn in a ray's space.
     bool clockwise = false, counter_clockwise = false;
     bool flattened = false;
+    bool clipped = true;     ///< by the view's planes
     bool two_sided = false;  ///< normals turn to the viewer
     bool transparent = false;
     bool colored = false;  ///< by the colours of its vertices
@@ -86,6 +87,8 @@ private:
         std::vector<TriangleRef> triangles;
         mesh::Bvh<double> tree;
     };
+    /// Its last is before its first where nothing is kept of the ray.
+    scene::KeptInterval kept_of(const RayDifferential& ray) const;
     /// The cap of the part of the highest id that is solid where the ray comes through a clip plane.
     std::optional<TriangleHit> cap_hit(const RayDifferential& ray, const scene::KeptInterval& kept) const;
 

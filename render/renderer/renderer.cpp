@@ -13,6 +13,7 @@
 #include "gl/passes/id_pass.hpp"
 #include "gl/resolver.hpp"
 #include "gl/sample_drawing.hpp"
+#include "plan/cut_cache.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/occlusion_culling.hpp"
 #include "plan/transparency_cache.hpp"
@@ -65,6 +66,7 @@ struct Renderer::Impl {
         if (!scene) scene = std::make_shared<gl::GpuScene>(wanted);
         staged.reset();
         shapes.emplace(*wanted);
+        cuts = {};
         occlusion = std::make_shared<plan::OcclusionHistory>(wanted->nodes().size());
     }
 
@@ -126,6 +128,7 @@ struct Renderer::Impl {
     gl::SubmittedWork submitted;
     std::shared_ptr<gl::GpuScene> scene, staged;
     std::optional<plan::TransparencyCache> shapes;
+    plan::CutCache cuts;
     std::shared_ptr<plan::OcclusionHistory> occlusion;  // of the scene's nodes
     gl::Programs programs;
     gl::Passes passes{programs};
@@ -165,7 +168,7 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
         is_resident = [this](scene::Index geometry, const mesh::DetailLevel& level) {
             return scene->can_draw(geometry, level);
         };
-    if (view.scene && !job.planner->step(view, *shapes, budget, is_resident)) {
+    if (view.scene && !job.planner->step(view, {*shapes, cuts}, budget, is_resident)) {
         stats.render_ms += milliseconds_since(start);
         return false;
     }
@@ -301,7 +304,7 @@ std::vector<scene::Index> Renderer::node_ids(const plan::View& view) {
     return impl_->draw_or_fail([&] {
         impl_->use_scene(view.scene->scene);
         return impl_->ids.draw(
-            plan::visible_faces(view), *impl_->scene, view.width, view.height,
+            plan::visible_faces(view, impl_->cuts), *impl_->scene, view.width, view.height,
             math::reversed_clip_from_view(plan::projection_of(view), plan::near_distance(view)));
     });
 }

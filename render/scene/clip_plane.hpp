@@ -8,7 +8,8 @@
 
 namespace vrut::scene {
 
-/// A plane that cuts the scene open, in world space: points p with dot(normal, p) > distance are not shown.
+/// A plane that cuts the scene open, in world space: points p with dot(normal, p) > distance are not shown,
+/// but for those of presentation (Node::presentation), which is no part of the product.
 struct ClipPlane {
     glm::dvec3 normal{0, 0, 1};  ///< unit
     double distance = 0;         ///< of the plane from the world's origin, along the normal

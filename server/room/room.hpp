@@ -11,6 +11,7 @@
 #include "event_log.hpp"
 #include "frame_header.hpp"
 #include "mesh/picking.hpp"
+#include "mesh/watertight_memo.hpp"
 #include "message_table.hpp"
 #include "navigation/clicks.hpp"
 #include "navigation/flight.hpp"
@@ -359,7 +360,8 @@ private:
     bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
     plan::View visible_;
     protocol::SharedMap<protocol::Marker> shown_markers_;  ///< whose marks are in visible_
-    std::deque<Frame> frames_;                             ///< the last kFramesRemembered
+    mutable mesh::WatertightMemo watertight_;
+    std::deque<Frame> frames_;  ///< the last kFramesRemembered
     std::int64_t newest_request_ = 0, newest_recording_ = 0;
     std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk
     std::map<std::int64_t, Recording> recordings_;    ///< until all of them is written

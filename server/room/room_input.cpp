@@ -138,7 +138,14 @@ std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, boo
     const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
     return mesh::pick(
         *scene_, {seen.camera.eye, scene::direction_through(seen.camera, size.width / size.height, point)},
-        {.through_transparent = through, .trees = loaded_.picking_trees.get(), .mode = visible_.mode});
+        {.through_transparent = through,
+         .trees = loaded_.picking_trees.get(),
+         .mode = visible_.mode,
+         .clip_planes = visible_.clip_planes,
+         // At once, not once a thread has found it: a replay has to hit what was hit.
+         .is_solid = [this](scene::Index geometry) {
+             return watertight_.is_watertight(scene_->scene, geometry);
+         }});
 }
 
 void Room::apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit) {

@@ -19,6 +19,17 @@ std::optional<std::string> picture_of(const scene::BackgroundData& data, const s
     return image.empty() ? std::nullopt : std::optional(image);
 }
 
+/// A little larger, so that it cuts nothing, and has a size in each direction.
+protocol::SectionBoxState box_around(const math::Bounds& bounds) {
+    const glm::dvec3 farthest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+    const double margin =
+        1e-3 * std::max(bounds.radius(), 1e-6 * std::max({farthest.x, farthest.y, farthest.z}));
+    protocol::SectionBoxState box;
+    box.min = bounds.min - (margin > 0 ? margin : 1);
+    box.max = bounds.max + (margin > 0 ? margin : 1);
+    return box;
+}
+
 void add_backgrounds(const scene::PlacedScene& placed, const glm::dvec3& eye,
                      protocol::BackgroundsState& backgrounds) {
     auto items = *backgrounds.items;
@@ -164,6 +175,7 @@ protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
                                         : state_of(camera_of(state.views->at("home")), placed.bounds);
     add_lights(scene, state.lights);
     add_backgrounds(placed, state.camera.eye, state.backgrounds);
+    if (!placed.bounds.empty()) state.section_box = box_around(placed.bounds);
     count_classes(state, placed);
     return state;
 }
@@ -337,6 +349,22 @@ std::vector<plan::PlacedMarker> markers_of(const std::map<std::string, protocol:
     return result;
 }
 
+std::vector<scene::ClipPlane> clip_planes_of(const protocol::State& state) {
+    std::vector<scene::ClipPlane> planes;
+    planes.reserve(scene::kMostClipPlanes);
+    for (const auto& [name, section] : *state.sections)
+        if (section.on) planes.push_back({section.normal, section.distance, section.caps, section.hatched});
+    const protocol::SectionBoxState& box = state.section_box;
+    if (!box.on) return planes;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 along(0);
+        along[axis] = 1;
+        planes.push_back({along, box.max[axis], box.caps, box.hatched});
+        planes.push_back({-along, -box.min[axis], box.caps, box.hatched});
+    }
+    return planes;
+}
+
 plan::View view_of(const protocol::State& state, std::shared_ptr<const scene::PlacedScene> placed) {
     plan::View view;
     view.camera = camera_of(state.camera);
@@ -350,6 +378,7 @@ plan::View view_of(const protocol::State& state, std::shared_ptr<const scene::Pl
     if (state.renderer.show_selection && state.selection.node)
         view.selected = placed->scene->find_node(*state.selection.node);
     view.background = background_of(state.backgrounds, *placed, view.camera.eye);
+    view.clip_planes = clip_planes_of(state);
     view.scene = std::move(placed);
     return view;
 }

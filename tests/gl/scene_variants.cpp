@@ -50,6 +50,7 @@ plan::View scaled(plan::View view, double factor) {
     for (glm::dvec3* point :
          {&view.camera.eye, &view.camera.focus, &view.camera.center, &view.light.position})
         *point *= factor;
+    for (scene::ClipPlane& plane : view.clip_planes) plane.distance *= factor;
     view.light.attenuation /= glm::dvec3(1, factor, factor * factor);
     scene::SceneParts parts = parts_of(*view.scene->scene);
     for (scene::Geometry& geometry : parts.geometries)
@@ -67,6 +68,7 @@ plan::View moved(plan::View view, const glm::dvec3& offset) {
     for (glm::dvec3* point :
          {&view.camera.eye, &view.camera.focus, &view.camera.center, &view.light.position})
         *point += offset;
+    for (scene::ClipPlane& plane : view.clip_planes) plane.distance += glm::dot(plane.normal, offset);
     scene::SceneParts parts = parts_of(*view.scene->scene);
     for (scene::Geometry& geometry : parts.geometries)
         for (glm::dvec3& position : geometry.positions) position += offset;

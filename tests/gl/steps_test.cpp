@@ -1,4 +1,5 @@
 // Images are drawn in steps: they may take turns, and no step does more than so much.
+#include "plan/cut_cache.hpp"
 #include "plan/draw_budget.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/transparency_cache.hpp"
@@ -158,10 +159,11 @@ TEST_CASE("planning many panes takes steps, each of which looks at so many") {
     plan::View view = view_from({0, 0, 5});
     view.scene = scene_of(parts);
     plan::TransparencyCache shapes(*view.scene->scene);
+    plan::CutCache cuts;
     const auto steps = [&] {
         plan::FramePlanner planner;
         int count = 1;
-        for (plan::DrawBudget work(true); !planner.step(view, shapes, work); ++count)
+        for (plan::DrawBudget work(true); !planner.step(view, {shapes, cuts}, work); ++count)
             work = plan::DrawBudget(true);
         REQUIRE(planner.plan().scene.transparent.size() == 1);
         CHECK(planner.plan().scene.transparent[0].items.size() == kPanes);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "io/read_scene.hpp"
+#include "plan/cut_cache.hpp"
 #include "shapes.hpp"
 #include "views.hpp"
 
@@ -45,7 +46,8 @@ TEST_CASE("a car's windows are drawn sorted from all around, but for one that is
                     ++windows;
                     exact += group.exact;
                 }
-            for (const plan::DrawItem& item : plan::visible_faces(view))
+            plan::CutCache cuts;
+            for (const plan::DrawItem& item : plan::visible_faces(view, cuts))
                 expected += scene.is_transparent(scene.material(item.material));
             CHECK(blended == expected);
             CHECK(windows >= 8);  // of four doors, two quarters, the boot lid, and the windscreen

@@ -23,9 +23,14 @@ void count_draw(GLsizei indices, plan::FrameStats& stats) {
 }  // namespace
 
 PipelineState PipelineState::for_item(const plan::DrawItem& item, bool front_only) const {
-    PipelineState state = *this;
+    PipelineState state = clipped_as(item);
     state.cull_back = item.cull_mode != plan::CullMode::none || front_only;
     state.clockwise_front = item.mirrored;
+    return state;
+}
+
+PipelineState PipelineState::clipped_as(const plan::DrawItem& item) const {
+    PipelineState state = *this;
     state.clip_distances = std::min(static_cast<int>(item.clip_planes.size()), kMostClipDistances);
     return state;
 }

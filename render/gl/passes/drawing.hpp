@@ -35,6 +35,8 @@ struct PipelineState {
 
     /// The same, with the sides of an item that show; `front_only`: of a two-sided one, too.
     PipelineState for_item(const plan::DrawItem& item, bool front_only = false) const;
+    /// The same, with the item's clip planes alone.
+    PipelineState clipped_as(const plan::DrawItem& item) const;
 };
 
 /// Makes it that of the context.

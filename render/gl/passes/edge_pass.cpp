@@ -8,6 +8,8 @@ namespace vrut::gl {
 
 namespace {
 
+const glm::dvec3 kCutColor(0.1);
+
 void draw_lines(const GpuEdges& edges, plan::FrameStats& stats) {
     if (edges.index_count == 0) return;  // triangles that are points
     glBindVertexArray(edges.vertex_array.get());
@@ -25,6 +27,7 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, cons
     std::optional<PlainProgram> solid;
     if (style.edge_color) solid.emplace(programs_, *style.edge_color, clip_from_view);
     for (const plan::DrawItem& item : items) {
+        if (item.cut) continue;
         const GpuEdges* edges = scene.edges(item.geometry);
         stats.substitutes += edges == nullptr;
         if (!edges && style.edge_color) continue;  // its faces are drawn
@@ -38,8 +41,24 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, cons
         else
             programs.use(SurfacePrograms::SurfaceKind::edges, item, geometry,
                          scene.scene()->material(item.material));
-        apply(state);
+        apply(state.clipped_as(item));
         draw_lines(*edges, stats);
+    }
+}
+
+void EdgePass::draw_cuts(std::span<const plan::DrawItem> items, GpuScene& scene,
+                         const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
+    // On the very faces that they border.
+    constexpr double kNearer = 1 + 0x1p-14;
+    glm::dmat4 nearer(1);
+    nearer[2][2] = kNearer;
+    PlainProgram program(programs_, kCutColor, nearer * clip_from_view);
+    const PipelineState state;
+    for (const plan::DrawItem& item : items) {
+        const GpuEdges& lines = scene.cut_lines(item);
+        program.use(item, scene.geometry(item));
+        apply(state.clipped_as(item));
+        draw_lines(lines, stats);
     }
 }
 
@@ -47,13 +66,14 @@ void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& sce
                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     PipelineState state;
     state.depth_test = false;
-    apply(state);
     PlainProgram program(programs_, color, clip_from_view);
     for (const plan::DrawItem& item : items) {
+        if (item.cut) continue;
         const GpuEdges* edges = scene.edges(item.geometry);
         stats.substitutes += edges == nullptr;
         if (!edges) continue;
         program.use(item, scene.geometry(item));
+        apply(state.clipped_as(item));
         draw_lines(*edges, stats);
     }
 }

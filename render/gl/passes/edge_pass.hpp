@@ -16,6 +16,9 @@ public:
     /// them. Draws into the bound framebuffer; adds its draws and edges to `stats`.
     void draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
               const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats);
+    /// The lines of items' cuts.
+    void draw_cuts(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+                   plan::FrameStats& stats);
     /// In one colour, over everything.
     void draw_overlay(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dvec3& color,
                       const glm::dmat4& clip_from_view, plan::FrameStats& stats);

@@ -89,6 +89,7 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         program.use(item, geometry);
+        apply(over_everything().clipped_as(item));
         draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.
         const math::PixelBox box = box_of(item, scene, clip_from_view, image_size);

@@ -33,6 +33,7 @@ enum SurfaceUniform : GLint {
     emissive_at = 16,
     normal_scale_at = 17,
     clip_planes_at = 20,
+    cap_depth_at = 33,
 };
 
 constexpr GLuint kViewUniformsBinding = 0;
@@ -149,6 +150,22 @@ void set_clip_planes(const plan::DrawItem& item, const GpuGeometry& geometry) {
     glUniform4fv(clip_planes_at, static_cast<GLsizei>(planes.size()), glm::value_ptr(planes[0]));
 }
 
+/// Of the current program, for an item with a cut. 1 / distance is linear in the image: on the ray w · (x, y,
+/// -1) of a pixel the plane n · p = h lies at w = h / (n · (x, y, -1)), and depth is near / w.
+void set_cap_depth(const plan::DrawItem& item, const glm::dmat4& clip_from_view) {
+    std::array<GLint, 4> viewport{};
+    glGetIntegerv(GL_VIEWPORT, viewport.data());
+    const glm::dvec3 normal(item.cut_plane);
+    const glm::dvec2 scale(clip_from_view[0][0], clip_from_view[1][1]), shift(clip_from_view[2]);
+    const glm::dvec2 slope = glm::dvec2(normal) / scale;
+    const glm::dvec3 reciprocal(2.0 * slope / glm::dvec2(viewport[2], viewport[3]),
+                                glm::dot(slope, shift - 1.0) - normal.z);
+    const double height = -item.cut_plane.w;
+    // An eye in the plane sees no cap.
+    const double near = height != 0 ? clip_from_view[3][2] / height : 0;
+    set(cap_depth_at, glm::vec3(near * reciprocal));
+}
+
 bool is_two_sided(const plan::DrawItem& item) { return item.cull_mode != plan::CullMode::back; }
 
 glm::vec3 base_of(const scene::Material& material) {
@@ -166,6 +183,7 @@ SurfaceVariant::Light kind_of(const scene::Light& light, const CameraMatrices& c
 
 void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view, GpuScene* scene) {
     scene_ = scene;
+    clip_from_view_ = camera.clip_from_view;
     cube_map_ = view.background.cube_map;
     light_ = kind_of(view.light, camera);
     methods_ = view.methods;
@@ -185,6 +203,7 @@ SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawIte
     variant.metallic_roughness = item.metallic_roughness;
     variant.mapped = plan::is_mapped(item);
     variant.coated = item.coated;
+    variant.cap = item.cut != nullptr;
     if (!variant.metallic_roughness && !variant.mapped) variant.lit_at = methods_.light;
     variant.double_single = geometry.is_double_single();
     variant.anisotropic =
@@ -254,6 +273,7 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
         glUniform1f(normal_scale_at, has_normals ? static_cast<float>(material.normal_scale) : 0.0F);
     }
     set_clip_planes(item, geometry);
+    if (item.cut) set_cap_depth(item, clip_from_view_);
 }
 
 /// Returns false if all of the item's triangles would be culled.
@@ -320,7 +340,7 @@ void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const Pipe
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene_->geometry(item);
         if (find_facing(item, geometry))
-            add_instance(item, geometry, material ? *material : scene_->scene()->material(item.material));
+            add_instance(item, geometry, material ? *material : plan::material_of(item, *scene_->scene()));
     }
     if (draws_.empty()) return;
     write_instances();
@@ -356,7 +376,7 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
             draw_run(items.first(length), state, material, stats);
         } else if (find_facing(first, geometry)) {
             use(SurfaceKind::faces, first, geometry,
-                material ? *material : scene_->scene()->material(first.material));
+                material ? *material : plan::material_of(first, *scene_->scene()));
             apply(state.for_item(first));
             draw_triangles(geometry, facing_, stats);
         }
@@ -370,7 +390,7 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
 void PlainProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {
     using Output = PlainVariant::Output;
     const PlainVariant variant{color_ ? Output::color : Output::node_id, geometry.is_double_single(),
-                               clip_capacity(item.clip_planes.size())};
+                               clip_capacity(item.clip_planes.size()), item.cut != nullptr};
     if (current_ != variant) {
         current_ = variant;
         programs_.use(variant);
@@ -380,6 +400,7 @@ void PlainProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) 
     if (!color_) glUniform1i(node_at, item.node);
     set_transform(item, geometry);
     set_clip_planes(item, geometry);
+    if (item.cut) set_cap_depth(item, clip_from_view_);
 }
 
 void set_first_triangle(GLuint number) { glUniform1ui(first_triangle_at, number); }

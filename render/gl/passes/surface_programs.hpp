@@ -66,6 +66,7 @@ private:
     GlBuffer view_uniforms_;
     GlTexture white_;  // stands for an image where there is none
     GpuScene* scene_ = nullptr;
+    glm::dmat4 clip_from_view_{1};
     std::optional<std::array<scene::Index, 6>> cube_map_;
     std::vector<plan::TriangleRange> facing_;  // of the item to come
     std::vector<GpuInstance> instances_;       // of the draw call to come

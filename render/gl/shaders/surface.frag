@@ -1,6 +1,7 @@
 #version 450 core
 #include "view_uniforms.glsl"
 #include "discard_clipped.glsl"
+#include "cap_depth.glsl"
 #ifndef LIT_AT_VERTEX
 #include "phong.glsl"
 #endif
@@ -164,6 +165,7 @@ vec3 metallic_color(vec3 displayed_base, vec3 to_eye, float d, vec3 n, vec3 smoo
 
 void main() {
     discard_clipped();
+    write_cap_depth();
 #ifdef NEEDS_NORMAL
     float d = length(view_position);
     vec3 to_eye = -view_position / d;
