@@ -97,6 +97,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     state.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}, 5};
     state.nodes.set("5", {false, -1, glm::dmat4(1), 3});
     state.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
+    state.sections.set("Lengthwise", {{0, 0, 1}, 0.25, true, true, false});
     state.control = {"c1", "Bea", true};
     state.clients.set({{"c1", {"Bea", Role::control}}, {"c2", {{}, Role::host}}});
     state.recording = RecordingState{"drive"};

@@ -127,6 +127,8 @@ TEST_CASE("what is patched has the value that was given") {
                         "material": 3}},
         "markers": {"Scratch": {"point": [1,2,3], "node": 5, "text": "here"}},
         "views": {"side": {"eye": [5,0,0], "focus": [1,0,0], "up": [0,0,1], "center": [2,0,0], "fov": 60, "order": -1.5}},
+        "sections": {"cut": {"normal": [0,0,-2], "distance": 1.5, "on": false, "caps": false, "hatched": true}},
+        "sectionBox": {"min": [-1,-2,-3], "max": [1,2,3], "on": true, "caps": false, "hatched": true},
         "quality": {"preference": 0.25, "latencyTargetMs": 20}})");
     State expected = start();
     expected.camera.node = 4;
@@ -146,6 +148,8 @@ TEST_CASE("what is patched has the value that was given") {
     expected.nodes.set("5", {false, -1, matrix, 3});
     expected.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
     expected.views.set("side", {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60, -1.5});
+    expected.sections.set("cut", {{0, 0, -1}, 1.5, false, false, true});
+    expected.section_box = {{-1, -2, -3}, {1, 2, 3}, true, false, true};
     expected.quality = {0.25, 20};
     CHECK(state == expected);
 }
@@ -219,6 +223,16 @@ const std::vector<Member> kMembers = {
     {"/views/home/center", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
     {"/views/home/fov", {"1", "170"}, kNoNumber, kNoFov},
     {"/views/home/order", {"-1e9", "0.5", "1e9"}, kNoNumber, {"-1.1e9", "1.1e9"}},
+    {"/sections/cut/normal", {"[0,-1,0]", "[0.6,0,0.8]"}, kNoVector, kNoPosition},
+    {"/sections/cut/distance", {"-1e30", "1e30"}, kNoNumber, {"-1.1e30", "1.1e30"}},
+    {"/sections/cut/on", {"true", "false"}, kNoFlag, {}},
+    {"/sections/cut/caps", {"true", "false"}, kNoFlag, {}},
+    {"/sections/cut/hatched", {"true", "false"}, kNoFlag, {}},
+    {"/sectionBox/min", {"[-1e30,-1,-1]"}, kNoVector, kNoPosition},
+    {"/sectionBox/max", {"[1e30,1,1]"}, kNoVector, kNoPosition},
+    {"/sectionBox/on", {"true", "false"}, kNoFlag, {}},
+    {"/sectionBox/caps", {"true", "false"}, kNoFlag, {}},
+    {"/sectionBox/hatched", {"true", "false"}, kNoFlag, {}},
     {"/quality/preference", {"0", "1"}, kNoNumber, {"-0.01", "1.01"}},
     {"/quality/latencyTargetMs", {"1", "10000"}, kNoNumber, {"0.9", "10001"}},
 };
@@ -242,7 +256,9 @@ const std::vector<const char*> kReadOnly = {"/scene",
                                             "/renderer/transparent",
                                             "/renderer/reflective"};
 
-State with_marker() { return after(start(), R"({"markers":{"here":{"point":[1,2,3]}}})"); }
+State with_entries() {
+    return after(start(), R"({"markers":{"here":{"point":[1,2,3]}},"sections":{"cut":{"normal":[0,0,1]}}})");
+}
 
 json patch_at(const std::string& path, const json& value) {
     json patch = json::object();
@@ -264,7 +280,7 @@ std::string dotted(std::string path) {
 
 void check_refused(const json& patch, const char* code, const std::string& culprit) {
     INFO(patch.dump());
-    const auto result = patched(with_marker(), start(), patch);
+    const auto result = patched(with_entries(), start(), patch);
     REQUIRE_FALSE(result.has_value());
     CHECK(result.error().code == code);
     CHECK_MESSAGE(result.error().message.find(culprit) != std::string::npos, result.error().message);
@@ -282,7 +298,7 @@ TEST_CASE("each member of the state: types and ranges") {
         for (const char* value : member.good) {
             const json patch = patch_at(member.path, json::parse(value));
             INFO(patch.dump());
-            const auto result = patched(with_marker(), start(), patch);
+            const auto result = patched(with_entries(), start(), patch);
             REQUIRE(result.has_value());
             // The document has it as it was given.
             const json document = StateDocument::next({}, *result)->json();
@@ -320,10 +336,28 @@ TEST_CASE("the state has the members that are tested here, and no others") {
 }
 
 TEST_CASE("sections and entries are objects") {
-    for (const char* path :
-         {"/camera", "/navigation", "/renderer", "/lights", "/lights/items", "/lights/items/7",
-          "/backgrounds", "/backgrounds/items", "/backgrounds/items/11", "/selection", "/nodes", "/nodes/5",
-          "/markers", "/markers/here", "/markers/new", "/views", "/views/home", "/views/new", "/quality"})
+    for (const char* path : {"/camera",
+                             "/navigation",
+                             "/renderer",
+                             "/lights",
+                             "/lights/items",
+                             "/lights/items/7",
+                             "/backgrounds",
+                             "/backgrounds/items",
+                             "/backgrounds/items/11",
+                             "/selection",
+                             "/nodes",
+                             "/nodes/5",
+                             "/markers",
+                             "/markers/here",
+                             "/markers/new",
+                             "/views",
+                             "/views/home",
+                             "/views/new",
+                             "/sections",
+                             "/sections/new",
+                             "/sectionBox",
+                             "/quality"})
         for (const json& value : {json(1), json(true), json("x"), json::array()})
             check_refused(patch_at(path, value), "bad-message", dotted(path));
     for (const json& patch : {json(), json(1), json("x"), json::array()})
@@ -343,6 +377,53 @@ TEST_CASE("the scene's own items neither come nor go") {
     CHECK(changed.lights.items->at("headlight").color == glm::dvec4(0, 0, 0, 1));
     CHECK(after(changed, R"({"lights":{"items":null}})") == start());
     CHECK(after(changed, R"({"lights":{"items":{"7":{}}}})") == changed);
+}
+
+TEST_CASE("sections are added, changed and removed, and their normals are unit") {
+    State state =
+        after(start(), R"({"sections":{"a":{"normal":[3,0,4],"distance":2},"b":{"normal":[0,1e30,0]}}})");
+    CHECK(state.sections->at("a") == SectionState{{0.6, 0, 0.8}, 2});
+    CHECK(state.sections->at("b") == SectionState{{0, 1, 0}, 0});
+    const glm::dvec3 unit = glm::normalize(glm::dvec3(0.3, -0.7, 0.1));
+    State turned = after(state, R"({"sections":{"a":{"normal":[0.3,-0.7,0.1]}}})");
+    CHECK(glm::distance(turned.sections->at("a").normal, unit) < 1e-15);
+    CHECK(after(turned, R"({"sections":{"a":{"on":false}}})").sections->at("a").normal ==
+          turned.sections->at("a").normal);
+    state = after(state, R"({"sections":{"a":null,"never":null}})");
+    CHECK(state.sections->size() == 1);
+    CHECK(after(state, R"({"sections":null})").sections->empty());
+    check_refused(json::parse(R"({"sections":{"new":{"distance":1}}})"), "bad-message",
+                  "'sections.new.normal'");
+    check_refused(json::parse(R"({"sections":{"new":{"normal":[0,0,0]}}})"), "bad-message",
+                  "'sections.new.normal' is [0, 0, 0]");
+    check_refused(json::parse(R"({"sections":{"new":{"normal":[0,-0.0,0]}}})"), "bad-message",
+                  "must lead somewhere");
+}
+
+TEST_CASE("there are six planes of sections at most") {
+    State state = start();
+    for (const char* name : {"1", "2", "3", "4", "5", "6"})
+        state = after(state, ("{\"sections\":{\"" + std::string(name) + "\":{\"normal\":[1,0,0]}}}").c_str());
+    const auto seventh = patched(state, start(), json::parse(R"({"sections":{"7":{"normal":[1,0,0]}}})"));
+    REQUIRE_FALSE(seventh);
+    CHECK(seventh.error().code == "too-many");
+    CHECK(seventh.error().message.find("6 entries") != std::string::npos);
+    CHECK(patched(state, start(), json::parse(R"({"sections":{"1":null,"7":{"normal":[1,0,0]}}})")));
+}
+
+TEST_CASE("the section box has a size in each direction") {
+    check_refused(json::parse(R"({"sectionBox":{"min":[0,1,0]}})"), "bad-message", "'sectionBox.min'");
+    check_refused(json::parse(R"({"sectionBox":{"max":[-1,-2,-3]}})"), "bad-message", "'sectionBox.min'");
+    const State state = after(start(), R"({"sectionBox":{"min":[5,5,5],"max":[6,6,6],"on":true}})");
+    CHECK(after(state, R"({"sectionBox":null})") == start());
+}
+
+TEST_CASE("a restored state has its sections, to the last bit") {
+    const State state = after(
+        start(), R"({"sections":{"a":{"normal":[0.3,-0.7,0.1],"distance":0.1}},"sectionBox":{"on":true}})");
+    const auto read = restored(start(), *document_of(state));
+    REQUIRE(read);
+    CHECK(*read == state);
 }
 
 TEST_CASE("markers are added, changed and removed") {
@@ -566,11 +647,14 @@ private:
         const std::string value = member.good[below(member.good.size())];
         if (below(4) == 0) {  // null at some level
             for (std::size_t up = below(3); up > 0 && path.rfind('/') != 0; --up) path.erase(path.rfind('/'));
-            return path.starts_with("/markers/here/") ? json::object() : patch_at(path, nullptr);
+            const bool of_new = path.starts_with("/markers/here/") || path.starts_with("/sections/cut/");
+            return of_new ? json::object() : patch_at(path, nullptr);
         }
         const std::string name = "n" + std::to_string(below(4));
         if (path.starts_with("/markers/"))
             return {{"markers", {{name, {{"point", {1, 2, below(3)}}, {"text", name}}}}}};
+        if (path.starts_with("/sections/"))
+            return {{"sections", {{name, {{"normal", {1, 0, below(3)}}, {"distance", below(3)}}}}}};
         if (path.starts_with("/views/") && below(2) == 0) return {{"views", {{name, json::object()}}}};
         if (path.starts_with("/nodes/")) path.replace(7, 1, std::to_string(below(3)));
         return patch_at(path, json::parse(value));
