@@ -252,15 +252,23 @@ public:
         if (closes) cap_normal_ = options.clip_planes[*kept.cap].normal;
     }
 
-    void test(const PickedNode& node) {
-        const bool capped = cap_normal_ && options_.is_solid(node.geometry);
-        if (!node.faces && !capped) return;
+    void test(PickedNode node) {
+        if (!node.faces && !cap_normal_) return;
         const scene::Geometry& geometry =
             placed_.scene->geometries()[static_cast<std::size_t>(node.geometry)];
         const InstanceAtRay part(geometry, placed_.world[static_cast<std::size_t>(node.index)], ray_.origin);
         const std::optional<double> from = box_entry(part, ray_.direction);
         if (!from || *from > best_.distance) return;
         const Bvh<float>* tree = options_.trees ? options_.trees->of(node.geometry) : nullptr;
+        bool capped = false;
+        for (std::size_t i = 0; i < options_.clip_planes.size(); ++i) {
+            const scene::ClipPlane& plane = options_.clip_planes[i];
+            const glm::dmat4& world = placed_.world[static_cast<std::size_t>(node.index)];
+            if (!scene::crosses(scene::clip_equation(plane, world), geometry)) continue;
+            const bool closed = plane.caps && options_.is_solid && options_.is_solid(node.geometry);
+            capped |= closed && kept_.cap == i;
+            node.two_sided |= !closed;
+        }
         if (capped) test_cap(node, part, tree);
         if (node.faces) test_faces(node, part, tree);
     }

@@ -26,6 +26,7 @@ std::shared_ptr<const CutSurface> cut_surface(const View& view, scene::Index nod
     auto surface = std::make_shared<CutSurface>();
     surface->cut =
         mesh::cut_of(scene.geometries()[static_cast<std::size_t>(geometry_of(view, node))], equation, cap);
+    surface->capped = cap;
     surface->normal = -glm::dvec3(equation);
     surface->material = scene::cap_material(scene.material(view.scene->nodes[at].material));
     if (cap && plane.hatched)

@@ -14,7 +14,8 @@ namespace vrut::plan {
 /// What a clip plane makes of a part: lines where it cuts the part's surface, and a cap where that is
 /// watertight.
 struct CutSurface {
-    mesh::Cut cut;             ///< in node space
+    mesh::Cut cut;  ///< in node space
+    bool capped = false;
     glm::dvec3 normal{0};      ///< of the cap, in node space, not unit
     scene::Material material;  ///< scene::cap_material()
 };

@@ -48,15 +48,8 @@ void add_item(const scene::PlacedScene& placed, scene::Index node, const glm::dm
     item.mirrored = determinant < 0;
 }
 
-enum class Side { shown, hidden, crossed };
-
-/// Where the item's box lies; `equation` as scene::clip_equation() returns it.
-Side side_of(const DrawItem& item, const scene::Scene& scene, const glm::dvec4& equation) {
-    const math::Bounds& box = scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-    const double middle = glm::dot(equation, glm::dvec4(box.center(), 1));
-    const double reach = glm::dot(glm::abs(glm::dvec3(equation)), box.half_extent());
-    if (middle + reach < 0) return Side::hidden;
-    return middle - reach < 0 ? Side::crossed : Side::shown;
+scene::Side side_of(const DrawItem& item, const scene::Scene& scene, const glm::dvec4& equation) {
+    return scene::side_of(scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds, equation);
 }
 
 /// Returns false if the view's clip planes leave nothing of the item.
@@ -65,9 +58,9 @@ bool clip(DrawItem& item, const View& view) {
     for (const scene::ClipPlane& plane : view.clip_planes) {
         const glm::dvec4 equation =
             scene::clip_equation(plane, view.scene->world[static_cast<std::size_t>(item.node)]);
-        const Side side = side_of(item, *view.scene->scene, equation);
-        if (side == Side::hidden) return false;
-        if (side == Side::crossed) item.clip_planes.push_back(equation);
+        const scene::Side side = side_of(item, *view.scene->scene, equation);
+        if (side == scene::Side::hidden) return false;
+        if (side == scene::Side::crossed) item.clip_planes.push_back(equation);
     }
     return true;
 }
@@ -78,16 +71,18 @@ glm::dvec4 in_view(const scene::ClipPlane& plane, const scene::Camera& camera) {
     return {normal, glm::dot(plane.normal, camera.eye) - plane.distance};
 }
 
-/// Of an item that planes cross: a cut for each, which the others clip.
-void add_cuts(const DrawItem& item, const View& view, CutCache& cuts, DrawBudget& budget,
+/// Of an item that planes cross: a cut for each, which the others clip. Where one leaves the item open, it is
+/// seen from both sides.
+void add_cuts(DrawItem& item, const View& view, CutCache& cuts, DrawBudget& budget,
               std::vector<DrawItem>& added) {
     for (std::size_t i = 0; i < view.clip_planes.size(); ++i) {
         const glm::dvec4 equation =
             scene::clip_equation(view.clip_planes[i], view.scene->world[static_cast<std::size_t>(item.node)]);
-        if (side_of(item, *view.scene->scene, equation) != Side::crossed) continue;
+        if (side_of(item, *view.scene->scene, equation) != scene::Side::crossed) continue;
         DrawItem cut;
         cut.cut = cuts.find(view, item.node, i, budget);
         if (cut.cut->cut.contours.empty()) continue;
+        if (!cut.cut->capped && item.cull_mode == CullMode::back) item.cull_mode = CullMode::none;
         cut.node = item.node;
         cut.geometry = item.geometry;
         cut.material = item.material;
@@ -304,7 +299,7 @@ bool FramePlanner::find_cuts(const View& view, CutCache& cuts, DrawBudget& budge
     const std::size_t count = items_.size() + unculled_items_.size();
     for (; cuts_found_ < count && !budget.is_spent(); ++cuts_found_) {
         const bool culled = cuts_found_ >= items_.size();
-        const DrawItem& item = culled ? unculled_items_[cuts_found_ - items_.size()] : items_[cuts_found_];
+        DrawItem& item = culled ? unculled_items_[cuts_found_ - items_.size()] : items_[cuts_found_];
         if (!item.clip_planes.empty()) add_cuts(item, view, cuts, budget, culled ? unculled_cuts_ : cuts_);
     }
     return cuts_found_ == count;
@@ -388,7 +383,7 @@ std::vector<DrawItem> visible_faces(const View& view, CutCache& cuts) {
     std::vector<DrawItem> items = visible_items(view), caps;
     cull_frustum(items, view);
     DrawBudget unlimited(false);
-    for (const DrawItem& item : items)
+    for (DrawItem& item : items)
         if (!item.clip_planes.empty()) add_cuts(item, view, cuts, unlimited, caps);
     insert_cuts(items, std::move(caps));
     return items;

@@ -101,19 +101,24 @@ bool cuts(const scene::ClipPlane& plane, const TracedInstance& part) {
     return beyond > 0 && static_cast<std::size_t>(beyond) < part.positions.size();
 }
 
-/// Those that a plane with caps cuts, if they are watertight and not flattened.
+/// Those that a plane cuts are capped, if they are watertight and not flattened; or open.
 void find_capped(std::vector<TracedInstance>& parts, const plan::View& view,
                  const std::vector<scene::ClipPlane>& planes) {
     const std::atomic<bool> go_on{false};
     const scene::Material* const override_material = plan::style_of(view).override_material;
     std::map<const scene::Geometry*, bool> watertight;
     for (TracedInstance& part : parts) {
-        const auto is_capped = [&](const scene::ClipPlane& plane) { return plane.caps && cuts(plane, part); };
-        if (part.flattened || !part.clipped || std::ranges::none_of(planes, is_capped)) continue;
+        const auto is_cut = [&](const scene::ClipPlane& plane) { return cuts(plane, part); };
+        if (part.flattened || !part.clipped || std::ranges::none_of(planes, is_cut)) continue;
         const auto [known, is_new] = watertight.emplace(part.geometry, false);
         if (is_new) known->second = mesh::is_watertight(*part.geometry, go_on);
         if (known->second)
             part.cap_material = override_material ? *override_material : scene::cap_material(*part.material);
+        const auto is_open = [&](const scene::ClipPlane& plane) {
+            return cuts(plane, part) && !(plane.caps && part.cap_material);
+        };
+        if (std::ranges::any_of(planes, is_open))
+            part.two_sided = part.clockwise = part.counter_clockwise = true;
     }
 }
 

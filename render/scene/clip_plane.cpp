@@ -10,6 +10,21 @@ glm::dvec4 clip_equation(const ClipPlane& plane, const glm::dmat4& world_from_no
     return {-normal, plane.distance - glm::dot(plane.normal, glm::dvec3(world_from_node[3]))};
 }
 
+Side side_of(const math::Bounds& box, const glm::dvec4& equation) {
+    const double middle = glm::dot(equation, glm::dvec4(box.center(), 1));
+    const double reach = glm::dot(glm::abs(glm::dvec3(equation)), box.half_extent());
+    if (middle + reach < 0) return Side::hidden;
+    return middle - reach < 0 ? Side::crossed : Side::shown;
+}
+
+bool crosses(const glm::dvec4& equation, const Geometry& geometry) {
+    if (side_of(geometry.bounds, equation) != Side::crossed) return false;
+    const auto is_shown = [&](const glm::dvec3& p) { return glm::dot(equation, glm::dvec4(p, 1)) >= 0; };
+    const auto& corners = geometry.positions;
+    return std::any_of(corners.begin(), corners.end(), is_shown) &&
+           !std::all_of(corners.begin(), corners.end(), is_shown);
+}
+
 std::optional<KeptInterval> kept_interval(std::span<const ClipPlane> planes, const glm::dvec3& origin,
                                           const glm::dvec3& direction) {
     KeptInterval kept{0, std::numeric_limits<double>::infinity(), {}};

@@ -13,7 +13,8 @@ namespace vrut::scene {
 struct ClipPlane {
     glm::dvec3 normal{0, 0, 1};  ///< unit
     double distance = 0;         ///< of the plane from the world's origin, along the normal
-    /// Watertight parts are closed where it cuts them, by a cap: a face of cap_material().
+    /// Watertight parts are closed where it cuts them, by a cap: a face of cap_material(). Others that it
+    /// cuts, and all without caps, are open: they are seen from both sides.
     bool caps = true;
     bool hatched = false;  ///< its caps
 
@@ -26,6 +27,12 @@ inline constexpr std::size_t kMostClipPlanes = 12;
 /// The plane in the space of a node: points are shown where the dot product with (point, 1) is not negative.
 /// Its length depends on the matrix.
 glm::dvec4 clip_equation(const ClipPlane& plane, const glm::dmat4& world_from_node);
+
+enum class Side { shown, hidden, crossed };
+/// Where a box lies of a plane in its space, as clip_equation() returns it.
+Side side_of(const math::Bounds& box, const glm::dvec4& equation);
+/// True if some of a geometry's corners are shown and some are not.
+bool crosses(const glm::dvec4& equation, const Geometry& geometry);
 
 /// What planes leave of a ray.
 struct KeptInterval {

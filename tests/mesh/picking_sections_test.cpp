@@ -92,9 +92,20 @@ std::pair<double, const scene::ClipPlane*> entry_of(const std::vector<scene::Cli
     return first;
 }
 
+/// A plane cuts the part and does not close it.
+bool is_open(const std::vector<glm::dvec3>& positions, const std::vector<scene::ClipPlane>& planes,
+             bool solid) {
+    for (const scene::ClipPlane& plane : planes) {
+        std::size_t out = 0;
+        for (const glm::dvec3& position : positions) out += beyond({plane}, position) > 0;
+        if (out > 0 && out < positions.size() && !(plane.caps && solid)) return true;
+    }
+    return false;
+}
+
 /// The part's faces along the ray, where they are kept.
 void add_faces(Expected& expected, const Part& part, const std::vector<glm::dvec3>& positions,
-               const std::vector<scene::ClipPlane>& planes, const mesh::Ray& ray) {
+               const std::vector<scene::ClipPlane>& planes, bool open, const mesh::Ray& ray) {
     const bool mirrored = glm::determinant(glm::dmat3(part.matrix)) < 0;
     for (const glm::uvec3& t : part.geometry.triangles) {
         const glm::dvec3 ab = positions[t.y] - positions[t.x], ac = positions[t.z] - positions[t.x];
@@ -104,7 +115,7 @@ void add_faces(Expected& expected, const Part& part, const std::vector<glm::dvec
         const double u = glm::dot(from, p) / determinant, v = glm::dot(ray.direction, q) / determinant;
         const double distance = glm::dot(ac, q) / determinant, inside = std::min({u, v, 1 - u - v});
         if (!(inside > -1e-9 && distance > 0)) continue;
-        if (!part.material.two_sided && (determinant > 0) == mirrored) continue;
+        if (!part.material.two_sided && !open && (determinant > 0) == mirrored) continue;
         const double out = beyond(planes, ray.origin + ray.direction * distance);
         if (out > 1e-8) continue;
         expected.close_call |= inside < 1e-9 || out > -1e-8;
@@ -121,7 +132,8 @@ Expected expected_pick(const std::vector<Part>& parts, const std::set<scene::Id>
         positions.reserve(part.geometry.positions.size());
         for (const glm::dvec3& position : part.geometry.positions)
             positions.emplace_back(part.matrix * glm::dvec4(position, 1));
-        add_faces(expected, part, positions, planes, ray);
+        const bool open = is_open(positions, planes, solids.contains(part.id));
+        add_faces(expected, part, positions, planes, open, ray);
         if (!plane || !plane->caps || !solids.contains(part.id)) continue;
         const double winding =
             std::abs(winding_number(positions, part.geometry, ray.origin + ray.direction * entry));
@@ -231,6 +243,22 @@ TEST_CASE("caps are hit of solid parts of planes that have them, from beyond onl
     CHECK_FALSE(mesh::pick(*scene, out, {.clip_planes = through_eye, .is_solid = all_solid}));
     const mesh::Ray back{{0.3, 0.2, -0.5}, {0, 0, -1}};
     CHECK(mesh::pick(*scene, back, {.clip_planes = through_eye, .is_solid = all_solid})->distance == 0.5);
+}
+
+TEST_CASE("a part that a plane leaves open is hit from behind, too") {
+    const std::vector<Part> parts{{1, quad(1), white(), turned_by(90, {0, 1, 0})}};
+    const auto scene = scene_of(parts);
+    const mesh::Ray behind{{-5, 0.2, 0.3}, {1, 0, 0}}, before{{5, 0.2, 0.3}, {-1, 0, 0}};
+    const auto hits = [&](const mesh::Ray& ray, double height) {
+        const std::vector<scene::ClipPlane> planes{{{0, 0, 1}, height}};
+        return mesh::pick(*scene, ray, {.clip_planes = planes, .is_solid = all_solid}).has_value();
+    };
+    CHECK(hits(before, 2));
+    CHECK_FALSE(hits(behind, 2));
+    const std::vector<scene::ClipPlane> crossing{{{0, 0, 1}, 0.5}};
+    const auto open = [](scene::Index) { return false; };
+    CHECK(mesh::pick(*scene, behind, {.clip_planes = crossing, .is_solid = open}));
+    CHECK_FALSE(hits(behind, 0.5));
 }
 
 TEST_CASE("glass has caps, which are hit even where glass is passed") {
