@@ -25,6 +25,10 @@ MARKERS = {"markers": {"Front": {"point": [0, 0.62, 2.10], "text": "Front"},
                        "Hinge": {"point": [0.86, 0.72, 0.84], "text": "Hinge"},
                        "Behind": {"point": [-0.86, 0.6, 0.2], "text": "Behind the car"}}}
 
+LENGTHWISE = {"sections": {"Lengthwise": {"normal": [1, 0, 0], "distance": 0.3, "hatched": True}}}
+CORNER = {"sections": {"Slanting": {"normal": [0.6, 0.8, 0], "distance": 0.8}},
+          "sectionBox": {"on": True, "max": [2, 2, 1.2]}}
+
 MODES = [  # name, what to see, options of render (a node by its path in braces), whether the reference draws it
     ("realistic", "In the materials of the scene, lit from the eye", [], True),
     ("stylized", "Dark blue faces and light blue edges bring out shapes", ["--mode", "stylized"], False),
@@ -35,6 +39,10 @@ MODES = [  # name, what to see, options of render (a node by its path in braces)
      ["--select", "{Drive train}"], False),
     ("selection-wireframe", "In wireframe its edges stand out: here the wheels",
      ["--wireframe", "--select", "{Wheels}"], False),
+    ("section", "A section cuts the scene open: watertight parts are closed by a cap, here hatched; the reference draws no lines",
+     ["--set", json.dumps(LENGTHWISE)], True),
+    ("section-box", "A box and a plane at once: parts that are not watertight stay open",
+     ["--set", json.dumps(CORNER)], True),
     ("markers", "Markers face the viewer, and fade where something covers them", ["--set", json.dumps(MARKERS)], False),
 ]
 

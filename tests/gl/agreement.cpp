@@ -43,8 +43,9 @@ SurfaceStack stack_at(const reference::Tracer& tracer, const glm::dvec2& raster)
         const reference::TracedInstance& part = tracer.parts()[layer.hit.part];
         const glm::uvec3& at = part.geometry->triangles[layer.hit.triangle];
         const glm::dvec3& a = part.positions[at.x];
+        const glm::dvec3 face = glm::cross(part.positions[at.y] - a, part.positions[at.z] - a);
         stack.push_back({layer, reference::interaction_of(part, layer.hit, layer.ray),
-                         glm::normalize(glm::cross(part.positions[at.y] - a, part.positions[at.z] - a))});
+                         layer.hit.cap ? layer.hit.cap->normal : glm::normalize(face)});
     }
     return stack;
 }
@@ -52,7 +53,8 @@ SurfaceStack stack_at(const reference::Tracer& tracer, const glm::dvec2& raster)
 /// Whether `there`, seen `dx` pixels to the right and `dy` above, goes on where `here` ends: on the same
 /// sheet, without a crease, and without a seam of the texture.
 bool goes_on(const SeenSurface& here, const SeenSurface& there, double dx, double dy) {
-    if (here.layer.hit.part != there.layer.hit.part || here.layer.reflected != there.layer.reflected)
+    if (here.layer.hit.part != there.layer.hit.part || here.layer.reflected != there.layer.reflected ||
+        here.layer.hit.cap.has_value() != there.layer.hit.cap.has_value())
         return false;
     const auto& ray = here.layer.ray;
     const double distance = here.layer.hit.distance;
@@ -118,6 +120,7 @@ const scene::Image& image_of(const plan::View& view, scene::Index texture) {
 
 PixelClass kind_of_surface(const plan::View& view, const reference::TracedInstance& part,
                            const SeenSurface& seen) {
+    if (seen.layer.hit.cap) return seen.layer.reflected ? PixelClass::mirror : PixelClass::opaque;
     PixelClass kind = part.transparent ? PixelClass::glass : PixelClass::opaque;
     if (part.mirror || seen.layer.reflected) kind = std::max(kind, PixelClass::mirror);
     const scene::Material& material = *part.material;
@@ -156,7 +159,7 @@ PixelClass kind_of(const plan::View& view, const reference::Tracer& tracer, cons
                    const SurfaceStack& stack) {
     const auto opaque = [&](const SeenSurface& seen) {
         const reference::TracedInstance& part = tracer.parts()[seen.layer.hit.part];
-        return !part.transparent && !(part.mirror && !seen.layer.reflected);
+        return (!part.transparent || seen.layer.hit.cap) && !(part.mirror && !seen.layer.reflected);
     };
     const bool to_the_background = std::none_of(stack.begin(), stack.end(), opaque);
     PixelClass kind = to_the_background ? kind_of_background(view, tracer, raster) : PixelClass::opaque;

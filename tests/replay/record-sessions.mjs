@@ -275,6 +275,31 @@ const SESSIONS = {
     return user;
   },
 
+  sections: async (session, name) => {
+    const user = await Participant.join(session, 'control', VIEW);
+    user.watch();
+    await user.record(name);
+    await user.ask({ type: 'patch', patch: { camera: { eye: [2.5, 2.2, 4], focus: [0, 0.6, 0] }, navigation: { turnAbout: 'touched' } } });
+    for (const distance of [0.6, 0.35, 0.1]) {
+      await user.ask({ type: 'patch', patch: { sections: { Front: { normal: [0, 0, 1], distance, hatched: true } } } });
+      await sleep(20);
+    }
+    const caps = [];
+    for (let x = 20; x < 400; x += 20)
+      for (let y = 60; y < 250; y += 20) {
+        const picked = await user.ask({ type: 'pick', x, y, frame: await user.seen() });
+        if (picked.normal?.[2] === 1 && Math.abs(picked.point[2] - 0.1) < 1e-9) caps.push([x, y]);
+      }
+    assert.ok(caps.length > 3, `${caps.length} caps`);
+    await user.drag(caps[1], [caps[1][0] + 60, caps[1][1] - 20], 12, 0, finger(4)); // about a point of a cap
+    await user.ask({ type: 'patch', patch: { sections: { Side: { normal: [1, 0, 1], distance: 0.5, caps: false } } } });
+    await user.drag([210, 130], [150, 140], 10, 0, finger(5));
+    await user.ask({ type: 'patch', patch: { sections: { Side: { on: false } }, sectionBox: { on: true, max: [1, 0.9, 3] } } });
+    await user.ask({ type: 'pick', x: 200, y: 140, frame: await user.seen(), then: 'center' });
+    await user.drag([210, 130], [250, 120], 10);
+    return user;
+  },
+
   doors: async (session, name) => {
     const user = await Participant.join(session, 'control', VIEW);
     user.watch();
