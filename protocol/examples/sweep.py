@@ -42,8 +42,11 @@ class Server:
 
     async def state(self):
         async for received in self.socket:
-            if isinstance(received, str) and json.loads(received)["type"] == "state":
-                return json.loads(received)["state"]
+            message = {"type": "frame"} if isinstance(received, bytes) else json.loads(received)
+            if message["type"] == "error":
+                raise SystemExit(f"sweep.py: {message['message']}")
+            if message["type"] == "state":
+                return message["state"]
 
 
 def reach(bounds, normal):

@@ -153,6 +153,7 @@ test('the script of the README moves the camera, and gives control back', async 
 test('each script tells its usage', async () => {
   assert.match(await succeeds(python('orbit.py', '--help')), /--steps/);
   assert.match(await succeeds(python('door.py', '--help')), /--open/);
+  assert.match(await succeeds(python('sweep.py', '--help')), /--normal/);
   assert.match(await succeeds(snapshot('--help')), /--camera/);
   assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
   assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
@@ -162,7 +163,7 @@ test('each script tells its usage', async () => {
 });
 
 test('a wrong token is told in a sentence', async () => {
-  for (const [script, args] of [['orbit.py', []], ['door.py', []]]) {
+  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []]]) {
     const result = await python(script, ...args, '--token', 'guess');
     assert.equal(result.status, 1);
     assert.equal(result.stderr, `${script}: the token is wrong\n`);
@@ -194,6 +195,29 @@ test('orbit.py saves the views of a whole turn, told the address as it is printe
     const turn = (directions[i - 1] - directions[i] + 360) % 360;
     assert.ok(Math.abs(turn - 120) < 1e-9, `turned by ${turn}`);
   }
+});
+
+test('sweep.py saves a picture for each step of a section, and takes it away again', async () => {
+  const seen = [];
+  const noted = watcher.patches.length;
+  await succeeds(python('sweep.py', '--steps', '3', '--size', '320x200', '--normal', '0,2,0', '--out', 'sweep'));
+  const names = fs.readdirSync(file('sweep')).sort();
+  assert.deepEqual(names, ['cut-000.jpg', 'cut-001.jpg', 'cut-002.jpg']);
+  for (const name of names) {
+    const { width, height } = jpeg(`sweep/${name}`);
+    assert.deepEqual([width, height], [320, 200]);
+    seen.push(fs.readFileSync(file(`sweep/${name}`)).toString('base64'));
+  }
+  assert.equal(new Set(seen).size, 3);
+  await watcher.until(() => Object.keys(watcher.state.sections).length === 0);
+  const distances = watcher.patches.slice(noted).map((patch) => patch.sections?.Sweep?.distance).filter(Number.isFinite);
+  assert.ok(distances.length > 0 && distances.every((distance) => distance > 0 && distance < 1.6), `${distances}`);
+});
+
+test('a section of no direction is refused in a sentence', async () => {
+  const result = await python('sweep.py', '--normal', '0,0,0', '--out', 'sweep');
+  assert.equal(result.status, 1);
+  assert.match(result.stderr, /^sweep.py: 'sections.Sweep.normal' is \[0, 0, 0\]/);
 });
 
 test('example_host prints the camera that others set, and ends at SIGINT', async () => {
