@@ -28,7 +28,7 @@ void check_sections(State& state) {
         const double largest =
             std::max({std::abs(section.normal.x), std::abs(section.normal.y), std::abs(section.normal.z)});
         if (largest == 0)
-            throw BadJson{error_code::bad_message,
+            throw BadJson{error_code::out_of_range,
                           "'sections." + excerpt(name) + ".normal' is [0, 0, 0]: it must lead somewhere"};
         const glm::dvec3 scaled = section.normal / largest;
         // A unit one stays as it is, to the last bit.
@@ -38,7 +38,7 @@ void check_sections(State& state) {
     state.sections.set(std::move(sections));
     for (int axis = 0; axis < 3; ++axis)
         if (!(state.section_box.min[axis] < state.section_box.max[axis]))
-            throw BadJson{error_code::bad_message,
+            throw BadJson{error_code::out_of_range,
                           "'sectionBox.min' must be below 'sectionBox.max' in each direction"};
 }
 

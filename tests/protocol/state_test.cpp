@@ -394,9 +394,9 @@ TEST_CASE("sections are added, changed and removed, and their normals are unit")
     CHECK(after(state, R"({"sections":null})").sections->empty());
     check_refused(json::parse(R"({"sections":{"new":{"distance":1}}})"), "bad-message",
                   "'sections.new.normal'");
-    check_refused(json::parse(R"({"sections":{"new":{"normal":[0,0,0]}}})"), "bad-message",
+    check_refused(json::parse(R"({"sections":{"new":{"normal":[0,0,0]}}})"), "out-of-range",
                   "'sections.new.normal' is [0, 0, 0]");
-    check_refused(json::parse(R"({"sections":{"new":{"normal":[0,-0.0,0]}}})"), "bad-message",
+    check_refused(json::parse(R"({"sections":{"new":{"normal":[0,-0.0,0]}}})"), "out-of-range",
                   "must lead somewhere");
 }
 
@@ -412,8 +412,8 @@ TEST_CASE("there are six planes of sections at most") {
 }
 
 TEST_CASE("the section box has a size in each direction") {
-    check_refused(json::parse(R"({"sectionBox":{"min":[0,1,0]}})"), "bad-message", "'sectionBox.min'");
-    check_refused(json::parse(R"({"sectionBox":{"max":[-1,-2,-3]}})"), "bad-message", "'sectionBox.min'");
+    check_refused(json::parse(R"({"sectionBox":{"min":[0,1,0]}})"), "out-of-range", "\'sectionBox.min\'");
+    check_refused(json::parse(R"({"sectionBox":{"max":[-1,-2,-3]}})"), "out-of-range", "\'sectionBox.min\'");
     const State state = after(start(), R"({"sectionBox":{"min":[5,5,5],"max":[6,6,6],"on":true}})");
     CHECK(after(state, R"({"sectionBox":null})") == start());
 }

@@ -54,6 +54,14 @@ export const ROWS = [
     beyond: 'of panes closer than 10⁻⁶ of their size the one with the higher id is in front; with more than a million overlapping pairs and more than 64 layers, glass is sorted by distance',
   },
   {
+    what: 'sections',
+    studies: ['section-edge-on', 'section-at-a-face', 'section-walls', 'section-slivers', 'section-gaps'],
+    tests: [['tests/protocol/state_test.cpp', 'there are six planes of sections at most']],
+    holds: (edgeOn, face, walls, slivers) =>
+      `six planes and a box; the eye ${power(1 / edgeOn.to)} above a plane, in it and below: ${off(edgeOn)}; ${short(walls.to)} walls behind a cap; a part ${power(slivers.to)} times as long as thick`,
+    beyond: 'a seventh plane is rejected; a part with a gap is not closed: it shows both sides, and lines where it is cut',
+  },
+  {
     what: 'minified textures',
     studies: ['minified'],
     holds: (minified) => `${short(minified.to)} texels to a pixel: within ${short(minified.worst)} of 255`,

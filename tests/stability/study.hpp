@@ -102,6 +102,12 @@ Study many_mirrors(const Laboratory& laboratory);
 Study edge_on_mirrors(const Laboratory& laboratory);
 Study bent_mirrors(const Laboratory& laboratory);
 Study mirrors_in_mirrors(const Laboratory& laboratory);
+// sections.cpp
+Study sections_along_the_view(const Laboratory& laboratory);
+Study sections_at_a_face(const Laboratory& laboratory);
+Study sections_through_many_walls(const Laboratory& laboratory);
+Study sections_of_slivers(const Laboratory& laboratory);
+Study sections_of_gaps(const Laboratory& laboratory);
 // moves.cpp
 Study many_moves(const Laboratory& laboratory);
 Study over_the_pole(const Laboratory& laboratory);

@@ -1189,6 +1189,32 @@ export type StateDocument = {
     /** The up axis in use; only for formats that do not define it: OBJ, STL and PLY. */
     upAxis?: 'y' | 'z';
   };
+  /** A box that cuts the scene open. */
+  sectionBox: {
+    /** Watertight parts are closed where it cuts them. */
+    caps: boolean;
+    /** The caps have lines across. */
+    hatched: boolean;
+    /** Its highest corner; at the start around the scene. */
+    max: Array<number>;
+    /** Its lowest corner; below `max` in each direction. */
+    min: Array<number>;
+    /** True: nothing outside of the box is shown. */
+    on: boolean;
+  };
+  /** Planes that cut the scene open, by name. */
+  sections: Record<string, {
+    /** Watertight parts are closed where it cuts them. */
+    caps: boolean;
+    /** Of the plane from the world's origin, along `normal`. */
+    distance: number;
+    /** The caps have lines across. */
+    hatched: boolean;
+    /** Where it leads is cut away; unit, of any length but 0 in a patch. A new plane must have it. */
+    normal: Array<number>;
+    /** False: it cuts nothing. */
+    on: boolean;
+  }>;
   /** What is selected. */
   selection: {
     /** The innermost node of `path` that has a hinge. */
@@ -1276,6 +1302,20 @@ export type StatePatch = {
     showSelection?: null | boolean;
     wireframe?: null | boolean;
   };
+  sectionBox?: null | {
+    caps?: null | boolean;
+    hatched?: null | boolean;
+    max?: null | Array<number>;
+    min?: null | Array<number>;
+    on?: null | boolean;
+  };
+  sections?: null | Record<string, null | {
+    caps?: null | boolean;
+    distance?: null | number;
+    hatched?: null | boolean;
+    normal?: null | Array<number>;
+    on?: null | boolean;
+  }>;
   selection?: null | {
     node?: null | number;
   };

@@ -49,6 +49,11 @@ const WRITABLE = {
   'backgrounds/color': COLOR,
   'backgrounds/items/13/color': COLOR,
   'selection/node': { good: [4, 0, 11], unknown: [999], range: [1.5], type: ['4', [4], {}, true] },
+  'sectionBox/min': { good: [[-9, -9, -9]], range: [...VECTOR.range, [1e6, 0, 0]], type: VECTOR.type },
+  'sectionBox/max': { good: [[9, 9, 9]], range: [...VECTOR.range, [0, -1e6, 0]], type: VECTOR.type },
+  'sectionBox/on': FLAG,
+  'sectionBox/caps': FLAG,
+  'sectionBox/hatched': FLAG,
   'quality/preference': { good: [0, 1, 0.25], range: [-0.01, 1.01], type: ['1', [], {}, true] },
   'quality/latencyTargetMs': { good: [100], range: [-1], type: ['100', [], {}, true] },
 };
@@ -68,7 +73,7 @@ test('the document has every member that the contract names, and no null', async
   const present = [
     ...Object.keys(WRITABLE).filter((path) => path !== 'selection/node'),
     ...READ_ONLY.filter((path) => !['selection/name', 'selection/path', 'control/holder', 'recording'].includes(path)),
-    'nodes', 'markers', 'views', 'selection', 'camera/node',
+    'nodes', 'markers', 'views', 'sections', 'selection', 'camera/node',
   ];
   assert.deepEqual(present.filter((path) => at(state, path) === undefined), []);
 });
@@ -117,6 +122,63 @@ test('the camera at the start is that of the first camera node', async (t) => {
   const { camera } = (await ContractClient.join(t, fresh, { role: 'view' })).state;
   assert.deepEqual([camera.node, camera.name, camera.eye, camera.focus, camera.up, camera.fov], [11, 'Presenter', [0, 0, 8], [0, 0, 0], [0, 1, 0], 40]);
   assert.ok(camera.near > 0 && camera.near < 7 && camera.far >= 9, `${camera.near} to ${camera.far}`);
+});
+
+describe('sections', () => {
+  const cleared = async (t) => {
+    const client = await steering(t, server);
+    await client.patch({ sections: null, sectionBox: null });
+    t.after(() => client.closed || client.patch({ sections: null, sectionBox: null }));
+    return client;
+  };
+
+  test('a plane comes with what it needs, has a unit normal, and goes', async (t) => {
+    const client = await cleared(t);
+    await client.patch({ sections: { Cut: { normal: [3, 0, 4], distance: 0.5 } } });
+    assert.deepEqual(client.state.sections, { Cut: { normal: [0.6, 0, 0.8], distance: 0.5, on: true, caps: true, hatched: false } });
+    await client.patch({ sections: { Cut: { on: false, caps: false, hatched: true, distance: -1 / 3 } } });
+    assert.deepEqual(client.state.sections.Cut, { normal: [0.6, 0, 0.8], distance: -1 / 3, on: false, caps: false, hatched: true });
+    await client.patch({ sections: { Cut: null } });
+    assert.deepEqual(client.state.sections, {});
+  });
+
+  test('what cannot be is refused, and changes nothing', async (t) => {
+    const client = await cleared(t);
+    const six = Object.fromEntries([1, 2, 3, 4, 5, 6].map((i) => [`Cut ${i}`, { normal: [i, 0, 0] }]));
+    await client.patch({ sections: six });
+    const before = JSON.stringify(client.state);
+    for (const [section, code, valid] of [
+      [{ normal: [0, 0, 0] }, 'out-of-range', true], [{ normal: [0, 1] }, 'out-of-range', false], [{ normal: 'up' }, 'bad-message', false],
+      [{ distance: 2e30 }, 'out-of-range', false], [{ on: 1 }, 'bad-message', false], [{ colour: 'red' }, 'unknown-member', false],
+    ])
+      await client.refused({ type: 'patch', patch: { sections: { 'Cut 1': section } } }, code, { valid });
+    await client.refused({ type: 'patch', patch: { sections: { 'Cut 7': { normal: [0, 0, 1] } } } }, 'too-many', { valid: true });
+    await client.refused({ type: 'patch', patch: { sections: { 'Cut 1': null, New: { distance: 1 } } } }, 'bad-message', { valid: true });
+    await client.refused({ type: 'patch', patch: { sectionBox: { min: [1e6, 0, 0] } } }, 'out-of-range', { valid: true });
+    assert.equal(JSON.stringify(client.state), before);
+  });
+
+  test('picks meet what a section leaves', async (t) => {
+    const client = await cleared(t);
+    const pick = () => client.ask({ type: 'pick', x: 256, y: 150 });
+    const whole = await pick();
+    assert.ok(whole.point);
+    await client.patch({ sections: { Cut: { normal: [0, 0, 1], distance: whole.point[2] - 1e-3 } } });
+    const cut = await pick();
+    assert.ok(!cut.point || cut.point[2] < whole.point[2] - 0.9e-3, `${cut.point}`);
+    await client.patch({ sections: { Cut: { on: false } } });
+    assert.deepEqual((await pick()).point, whole.point);
+  });
+
+  test('the box cuts as six planes do', async (t) => {
+    const client = await cleared(t);
+    const { point } = await client.ask({ type: 'pick', x: 256, y: 150 });
+    const around = (size) => ({ min: point.map((x) => x - size), max: point.map((x) => x + size), on: true });
+    await client.patch({ sectionBox: around(0.01) });
+    assert.deepEqual((await client.ask({ type: 'pick', x: 256, y: 150 })).point, point);
+    await client.patch({ sectionBox: { min: point.map((x) => x + 50), max: point.map((x) => x + 51) } });
+    assert.equal((await client.ask({ type: 'pick', x: 256, y: 150 })).point, undefined);
+  });
 });
 
 describe('writable members', () => {
