@@ -128,7 +128,6 @@ describe('sections', () => {
   const cleared = async (t) => {
     const client = await steering(t, server);
     await client.patch({ sections: null, sectionBox: null });
-    t.after(() => client.closed || client.patch({ sections: null, sectionBox: null }));
     return client;
   };
 
@@ -156,6 +155,7 @@ describe('sections', () => {
     await client.refused({ type: 'patch', patch: { sections: { 'Cut 1': null, New: { distance: 1 } } } }, 'bad-message', { valid: true });
     await client.refused({ type: 'patch', patch: { sectionBox: { min: [1e6, 0, 0] } } }, 'out-of-range', { valid: true });
     assert.equal(JSON.stringify(client.state), before);
+    await client.patch({ sections: null });
   });
 
   test('picks meet what a section leaves', async (t) => {
@@ -168,6 +168,7 @@ describe('sections', () => {
     assert.ok(!cut.point || cut.point[2] < whole.point[2] - 0.9e-3, `${cut.point}`);
     await client.patch({ sections: { Cut: { on: false } } });
     assert.deepEqual((await pick()).point, whole.point);
+    await client.patch({ sections: null });
   });
 
   test('the box cuts as six planes do', async (t) => {
@@ -178,6 +179,7 @@ describe('sections', () => {
     assert.deepEqual((await client.ask({ type: 'pick', x: 256, y: 150 })).point, point);
     await client.patch({ sectionBox: { min: point.map((x) => x + 50), max: point.map((x) => x + 51) } });
     assert.equal((await client.ask({ type: 'pick', x: 256, y: 150 })).point, undefined);
+    await client.patch({ sectionBox: null });
   });
 });
 
