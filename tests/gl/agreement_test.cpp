@@ -94,8 +94,7 @@ void check_drawing(RendererFixture& studio, const std::string& what, const Scene
     const scene::Image drawn = studio.draw(variant.view.scene, variant.view);
     std::vector<bool> lines = edges_of(studio, variant.view);
     if (!variant.view.clip_planes.empty()) add_cut_lines(drawn, lines);
-    Agreement result =
-        agreement(judge, drawn, lines, ids_of(variant.view, nodes, variant.ids), expected);
+    Agreement result = agreement(judge, drawn, lines, ids_of(variant.view, nodes, variant.ids), expected);
     // Lines behind glass and in mirrors are mixed with other colours, and not known. Interior pixels have
     // none.
     if (!variant.view.clip_planes.empty()) result.one_node_beyond = 0;
