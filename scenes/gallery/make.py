@@ -41,7 +41,7 @@ MODES = [  # name, what to see, options of render (a node by its path in braces)
      ["--wireframe", "--select", "{Wheels}"], False),
     ("section", "A section cuts the scene open: watertight parts are closed by a cap, here hatched; the reference draws no lines",
      ["--set", json.dumps(LENGTHWISE)], True),
-    ("section-box", "A box and a plane at once: parts that are not watertight stay open",
+    ("section-box", "A box and a plane at once: parts that are not watertight stay open, and show both sides",
      ["--set", json.dumps(CORNER)], True),
     ("markers", "Markers face the viewer, and fade where something covers them", ["--set", json.dumps(MARKERS)], False),
 ]
