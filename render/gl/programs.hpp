@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <map>
 #include <string>
 #include <string_view>
@@ -43,7 +42,11 @@ struct PlainVariant {
     int clip_planes = 0;         ///< clip_capacity()
     bool cap = false;            ///< at the depth of a clip plane
 
-    auto operator<=>(const PlainVariant&) const = default;
+    bool operator==(const PlainVariant&) const = default;
+    bool operator<(const PlainVariant& other) const {
+        return std::tie(output, double_single, clip_planes, cap) <
+               std::tie(other.output, other.double_single, other.clip_planes, other.cap);
+    }
 };
 
 /// What a surface and the light ask of the program that shades it. Each variant is a program of its own.
