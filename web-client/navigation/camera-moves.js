@@ -1,8 +1,8 @@
+import { add, cross, dot, scale, subtract } from '../base/vectors.js';
 import {
   RADIANS_PER_DEGREE, VERTICAL, focusDistance, isValidPose, rightDirection, tangentHeight, viewDirection,
   withOrthogonalUp,
 } from './camera.js';
-import { add, cross, dot, scale, subtract } from './vectors.js';
 
 /** @import { Camera } from './camera.js' */
 

@@ -1,4 +1,4 @@
-import { add, cross, distance, dot, isFinite, length, normalize, scale, subtract } from './vectors.js';
+import { add, cross, distance, dot, isFinite, length, normalize, scale, subtract } from '../base/vectors.js';
 
 /** @import { Camera as CameraState } from '../base/protocol.js' */
 

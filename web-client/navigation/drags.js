@@ -1,6 +1,6 @@
+import { add, dot, scale, subtract } from '../base/vectors.js';
 import { RADIANS_PER_DEGREE, directionThrough, focusDistance, tangentHeight, viewDirection } from './camera.js';
 import { lookedAround, panned, rotated, zoomed } from './camera-moves.js';
-import { add, dot, scale, subtract } from './vectors.js';
 
 /** @import { Camera } from './camera.js' */
 /** @import { Style } from './styles.js' */

@@ -1,6 +1,6 @@
+import { add, mix, scale, subtract } from '../base/vectors.js';
 import { VERTICAL, focusDistance, isValidPose, rightDirection, viewDirection, withOrthogonalUp } from './camera.js';
 import { orientation, rotate, slerp } from './quaternions.js';
-import { add, mix, scale, subtract } from './vectors.js';
 
 /** @import { Camera } from './camera.js' */
 

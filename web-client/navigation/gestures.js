@@ -1,8 +1,8 @@
+import { add, distance, dot, scale, subtract } from '../base/vectors.js';
 import { placeOf, viewDirection } from './camera.js';
 import { dollied, pannedBy, pinched, pointAt, turnedBy, wheeled } from './drags.js';
 import { applyKeyOperation, keyOperation, numberOf } from './keys.js';
 import { changedGrip, dragOperation, pressedGrip } from './styles.js';
-import { add, distance, dot, scale, subtract } from './vectors.js';
 
 /**
  * @import {

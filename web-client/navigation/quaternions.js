@@ -1,5 +1,5 @@
+import { add, cross, scale } from '../base/vectors.js';
 import { rightDirection, viewDirection } from './camera.js';
-import { add, cross, scale } from './vectors.js';
 
 /** @import { Camera } from './camera.js' */
 

@@ -1,5 +1,5 @@
+import { add, dot, scale, subtract } from '../base/vectors.js';
 import { directionThrough, isSamePose, placeOf, viewDirection } from '../navigation/camera.js';
-import { add, dot, scale, subtract } from '../navigation/vectors.js';
 import { decodeDepthMap, reciprocalDistanceAt } from '../warp/depth-map.js';
 import { similarity, withinReach } from './reach.js';
 import { screenOf } from './screen.js';

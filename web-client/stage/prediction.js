@@ -1,7 +1,7 @@
+import { distance } from '../base/vectors.js';
 import { isSamePose, withOrthogonalUp } from '../navigation/camera.js';
 import { CameraPath } from '../navigation/flight.js';
 import { Gestures } from '../navigation/gestures.js';
-import { distance } from '../navigation/vectors.js';
 
 /**
  * @import { FrameHeader, StateDocument } from '../base/protocol.js'

@@ -1,6 +1,6 @@
+import { cross, distance, dot, scale, subtract } from '../base/vectors.js';
 import { focusDistance, rightDirection, tangentHeight, viewDirection } from '../navigation/camera.js';
 import { CameraPath } from '../navigation/flight.js';
-import { cross, distance, dot, scale, subtract } from '../navigation/vectors.js';
 
 /** @import { Camera } from '../navigation/camera.js' */
 

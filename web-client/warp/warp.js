@@ -2,8 +2,8 @@
  * @import { Camera } from '../navigation/camera.js'
  * @import { DepthMap } from './depth-map.js'
  */
+import { cross, dot, scale, subtract } from '../base/vectors.js';
 import { rightDirection, tangentHeight, viewDirection } from '../navigation/camera.js';
-import { cross, dot, scale, subtract } from '../navigation/vectors.js';
 import { BITS, STEPS, layersOf } from './depth-map.js';
 import { PLACES, PLACE_BITS, Triangles, buildTriangles, packBlocks } from './grid.js';
 

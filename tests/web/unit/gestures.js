@@ -1,6 +1,6 @@
 import { readFileSync, readdirSync } from 'node:fs';
+import { add, cross, distance, dot, scale, subtract } from '../../../web-client/base/vectors.js';
 import { directionThrough } from '../../../web-client/navigation/camera.js';
-import { add, cross, distance, dot, scale, subtract } from '../../../web-client/navigation/vectors.js';
 import { Input } from '../../../web-client/stage/input.js';
 import { viewMapping } from '../../../web-client/stage/picture.js';
 import { FakeWindow, fakeEvent } from './fakes.js';

@@ -1,12 +1,12 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { describe, test } from 'node:test';
+import { add, cross, distance, dot, length, scale, subtract } from '../../../web-client/base/vectors.js';
 import { directionThrough, isValidPose, withOrthogonalUp } from '../../../web-client/navigation/camera.js';
 import { lookedAround, panned, rotated, zoomed } from '../../../web-client/navigation/camera-moves.js';
 import { CameraPath } from '../../../web-client/navigation/flight.js';
 import { Gestures } from '../../../web-client/navigation/gestures.js';
 import { keyOperation } from '../../../web-client/navigation/keys.js';
-import { add, cross, distance, dot, length, scale, subtract } from '../../../web-client/navigation/vectors.js';
 import { contextOf, gestures } from './gestures.js';
 
 /** Of a vector's length: the server's arithmetic is the same but for rounding. */

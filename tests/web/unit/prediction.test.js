@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
+import { distance, length } from '../../../web-client/base/vectors.js';
 import { withOrthogonalUp } from '../../../web-client/navigation/camera.js';
-import { distance, length } from '../../../web-client/navigation/vectors.js';
 import { Prediction } from '../../../web-client/stage/prediction.js';
 import { similarity } from '../../../web-client/stage/reach.js';
 import { axes, distance as focusDistance, focalLength } from '../projection.js';

@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { distance, dot } from '../../../web-client/base/vectors.js';
 import { lookedAround, panned, rotated, zoomed } from '../../../web-client/navigation/camera-moves.js';
 import { viewDirection } from '../../../web-client/navigation/camera.js';
-import { distance, dot } from '../../../web-client/navigation/vectors.js';
 import { withinReach } from '../../../web-client/stage/reach.js';
 
 const CAMERA = { eye: [4, 2, 6], focus: [0, 0.5, 0], up: [0, 1, 0], center: [0, 0.5, 0], fov: 40 };
