@@ -71,6 +71,8 @@ export class Bar {
       if (pose) fly(pose);
     }, { icon: 'back' });
     this.#back = back;
+    const sections = button(say('sections.title'), () => this.#menu.open(sections, 'sections'), { icon: 'section' });
+    sections.classList.add('spare');
     const more = button(say('bar.more'), () => this.#menu.open(more), { icon: 'menu' });
     this.#open(null);
     this.#bar.ariaLabel = say('bar.label');
@@ -81,6 +83,7 @@ export class Bar {
       opens(say('views.title'), 'camera', () => this.#views()),
       opens(say('parts.variants'), 'variants', () => this.#variants()),
       opens(say('parts.doors'), 'door', () => this.#doors()),
+      sections,
       more,
     );
     this.#showBack();

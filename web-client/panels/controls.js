@@ -69,7 +69,11 @@ export function selection(label, change) {
   return patient(labelled(label, '', select), apply, () => change(select.value));
 }
 
-/** A number, in words by `say`; `logarithmic`, with `step` of its decimal exponent. @returns {Control} shows it */
+/**
+ * A number, in words by `say`; `logarithmic`, with `step` of its decimal exponent.
+ *
+ * @returns {Control} shows it, and other limits, in steps of which there are a thousand
+ */
 export function range(label, { min, max, logarithmic = false, step = 1, say }, change) {
   const toScale = logarithmic ? Math.log10 : Number;
   const fromScale = logarithmic ? (exponent) => Number((10 ** exponent).toPrecision(3)) : Number;
@@ -79,7 +83,8 @@ export function range(label, { min, max, logarithmic = false, step = 1, say }, c
   const describe = (value) => {
     words.textContent = input.ariaValueText = say(value);
   };
-  const apply = (value) => {
+  const apply = (value, limits) => {
+    if (limits) Object.assign(input, { ...limits, step: (limits.max - limits.min) / 1000 });
     input.value = toScale(value);
     describe(value);
   };

@@ -4,6 +4,7 @@ import { Dialogs } from './dialogs.js';
 import { partsSection } from './parts-section.js';
 import { presentationSection } from './presentation-section.js';
 import { foldable } from './section.js';
+import { sectionsSection } from './sections-section.js';
 import { viewsSection } from './views-section.js';
 import { Watching } from './watching.js';
 
@@ -55,11 +56,18 @@ export class Menu {
     return !this.#panel.inert;
   }
 
-  /** @param {HTMLElement} opener gets the focus back */
-  open(opener) {
+  /**
+   * @param {HTMLElement} opener gets the focus back
+   * @param {string} [name] of a section to unfold
+   */
+  open(opener, name) {
     this.#opener = opener;
     this.#turn(true);
     this.#showAll();
+    /** @type {?HTMLDetailsElement} */
+    const section = name ? this.#panel.querySelector(`[data-section="${name}"]`) : null;
+    if (section) section.open = true;
+    section?.scrollIntoView();
     // Its texts may still be on their way.
     /** @type {?HTMLElement} */ (this.#panel.querySelector('.close'))?.focus({ preventScroll: true });
   }
@@ -70,6 +78,7 @@ export class Menu {
     this.#panel.classList.remove('open');
     this.#opener.focus({ preventScroll: true });
     this.#turn(false);
+    for (const { folded } of this.#sections) folded?.();
   }
 
   #turn(isOpen) {
@@ -88,7 +97,7 @@ export class Menu {
   /** Makes everything anew, in the language in force. */
   rebuild() {
     const page = this.#page;
-    this.#sections = [partsSection(page), viewsSection(page), presentationSection(page)];
+    this.#sections = [partsSection, viewsSection, sectionsSection, presentationSection].map((build) => build(page));
     this.#panel.ariaLabel = say('menu.title');
     this.#clean(this.#stage.classList.contains('clean'));
     const close = tool('close', say('menu.close'), () => this.close());

@@ -14,16 +14,20 @@ import { onChange } from '../base/store.js';
  * What a section is given.
  *
  * @typedef {{store: Store, commands: Commands, meter: Meter, report: (error: *) => void,
- *   offer: (text: string, label: string, act: () => void) => void}} Page
+ *   offer: (text: string, label: string, act: () => void) => void, nextTap: NextTap}} Page
+ *
+ * Says what to tap, and promises where in which frame the picture is tapped next; null where it is not.
+ *
+ * @typedef {(text: string, signal: AbortSignal) => Promise<?{x: number, y: number, frame?: number}>} NextTap
  *
  * What the page knows once it has a state.
  *
  * @typedef {Now & {state: StateDocument}} Known
  *
- * A folding part of the menu or of the settings, told when opened.
+ * A folding part of the menu or of the settings, told when opened, and when that or the menu is closed.
  *
  * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Known) => void,
- *   unfolded?: () => void}} Section
+ *   unfolded?: () => void, folded?: () => void}} Section
  */
 
 /**
@@ -43,13 +47,14 @@ export function section(name, title, ...bound) {
 }
 
 /** What folds is remembered. @param {Section} section */
-export function foldable({ name, title, content, unfolded: opened }) {
+export function foldable({ name, title, content, unfolded: opened, folded: closed }) {
   const details = element('details', { data: { section: name }, open: unfolded().includes(name) },
     element('summary', {}, element('h2', {}, title)), element('div', { className: 'content' }, ...content));
   details.ontoggle = () => {
     const others = unfolded().filter((other) => other !== name);
     remember('sections', [...others, ...(details.open ? [name] : [])].join(' '));
     if (details.open) opened?.();
+    else closed?.();
   };
   return details;
 }

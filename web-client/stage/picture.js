@@ -130,6 +130,17 @@ export class Picture {
     return viewMapping(this.#box, this.#view);
   }
 
+  /** How a camera's view lies on the window, whose pixels are `perPixel` of its own; null before the first frame. @param {Camera} camera */
+  lens(camera) {
+    if (!this.header) return null;
+    const { width, height } = this.#view;
+    const mapping = this.mapping();
+    const origin = mapping(0, 0);
+    const perPixel = mapping(1, 0).x - origin.x;
+    const onWindow = ({ x, y }) => ({ x: (x - origin.x) / perPixel, y: (y - origin.y) / perPixel });
+    return { lens: { camera, width, height }, perPixel, onWindow };
+  }
+
   /** Where a point of the world is seen in the view; null where it is not. @returns {?Place} */
   placeOf(point) {
     if (!this.header) return null;

@@ -4,11 +4,13 @@ import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
 import { Labels } from './labels.js';
 import { Lines, connectionSentence } from './lines.js';
+import { nextTap } from './next-tap.js';
 import { PartBar } from './part-bar.js';
 import { Picture } from './picture.js';
+import { PlaneHandle } from './plane-handle.js';
 import { Prediction } from './prediction.js';
 import { Presence } from './presence.js';
-import { watchViewSize } from './view-size.js';
+import { freeOf, watchViewSize } from './view-size.js';
 
 /**
  * @import { ServerError, ServerLoading, StateDocument } from '../base/protocol.js'
@@ -32,6 +34,7 @@ export class Stage {
   #prediction = new Prediction({ surfaceAt: (camera, place) => this.#picture.surfaceAt(camera, place) });
   #labels = new Labels(find('labels'));
   #lines = new Lines(find('lines'));
+  #handle;
   #noticesSeen = new Set();
   #controlBar;
   #input;
@@ -49,6 +52,9 @@ export class Stage {
     this.#controlBar = new ControlBar(find('control'), {
       send: commands.control,
       declined: (name) => this.#lines.pass(say('control.declined', { name })),
+    });
+    this.#handle = new PlaneHandle(/** @type {*} */ (find('handle')), {
+      change: (name, plane) => commands.change({ sections: { [name]: plane } }),
     });
     const partBar = new PartBar(find('selection'), { commands, leave: () => this.#canvas.focus() });
     this.#input = new Input(this.#canvas, {
@@ -102,6 +108,7 @@ export class Stage {
       ({ role, state, language }) => [role, state?.scene, state?.selection, state?.nodes, language],
       () => partBar.show(store.now));
     store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());
+    store.subscribe(({ steers, state, handled, inset }) => [steers, state?.sections, handled, inset], () => this.#showHandle());
     store.subscribe(({ state }) => [state?.scene?.notices, state?.notices],
       (...notices) => this.#passNotices(notices.flat().filter(Boolean)));
   }
@@ -151,6 +158,21 @@ export class Stage {
     if (refused) this.#lines.pass(errorSentence({ code: 'refused-scene', message: refused }));
   }
 
+  /**
+   * Says what to tap, and promises where in which frame the picture is tapped next; null where that is given up.
+   *
+   * @param {string} text
+   * @param {AbortSignal} signal
+   */
+  async nextTap(text, signal) {
+    this.#lines.hold('tap', text);
+    const tap = await nextTap(find('tap'), signal);
+    this.#lines.hold('tap', '');
+    const { hasPicture, header } = this.#store.now;
+    const frame = hasPicture ? header?.frame : undefined;
+    return tap && { ...this.#picture.mapping()(tap.clientX, tap.clientY), frame };
+  }
+
   /** Says what was done, with a button for what can be done about it. */
   offer(text, label, act) {
     this.#lines.pass(text, { label, act });
@@ -183,7 +205,17 @@ export class Stage {
   #move() {
     this.#picture.look(this.#prediction.camera);
     this.#labels.show(this.#picture, this.#store.now.state?.markers);
+    this.#showHandle();
     if (this.#prediction.flies) this.#flying ||= requestAnimationFrame(() => this.#flyOn());
+  }
+
+  #showHandle() {
+    const { state, steers, handled: name, inset } = this.#store.now;
+    const plane = name !== null && steers ? state?.sections[name] : undefined;
+    const camera = this.#prediction.camera;
+    const lens = camera && this.#picture.lens(camera);
+    this.#handle.show(plane?.on && lens && state
+      ? { ...lens, free: freeOf(lens.lens, inset), bounds: state.scene.bounds, name: /** @type {string} */ (name), plane } : null);
   }
 
   #flyOn() {

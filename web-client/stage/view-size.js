@@ -56,3 +56,13 @@ export function insetOf(view, column, rows) {
     left: within(column.left),
   };
 }
+
+/**
+ * What is free of a view; the inset is from its sides.
+ *
+ * @param {{width: number, height: number}} view
+ * @param {Sides} inset
+ */
+export function freeOf({ width, height }, { top, right, bottom, left }) {
+  return { left, top, right: width - right, bottom: height - bottom };
+}
