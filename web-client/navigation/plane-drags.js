@@ -19,6 +19,10 @@ export const ARROW = 120;
 const SHORTEST = 76;
 /** A normal that is seen shorter than this part of its length points at the viewer, or away: its drags go upwards. */
 const FLATTEST = 0.2;
+/** From an area's edge, in pixels, for a finger to have room about the foot. */
+const EDGE = 60;
+/** From a plane on which a point lies, in the scene's radius. */
+const SAME_PLANE = 1e-6;
 /** As far from the scene's middle, in its radius, as a plane may be taken hold of. */
 const FARTHEST = 1.5;
 
@@ -36,19 +40,24 @@ function placeIn({ camera, width, height }, point) {
 }
 
 /**
- * Where a plane is taken hold of: at its point nearest to the scene's middle, or, where that is not seen in `free`, at
- * the one in the middle of that; null where there is none of both.
+ * Where a plane is taken hold of: where it was before, as long as that lies on it, or at its point nearest to the scene's
+ * middle, or, where these are not seen in `free`, at the one in the middle of that; null where there is none of them.
  *
  * @param {Lens} lens
  * @param {Plane} plane
  * @param {{center: number[], radius: number}} scene
  * @param {Area} free
+ * @param {?number[]} [before]
  * @returns {?number[]}
  */
-export function footOf(lens, plane, { center, radius }, free) {
+export function footOf(lens, plane, { center, radius }, free, before) {
+  const isSeen = (point) => {
+    const place = placeIn(lens, point);
+    return place !== null && isWithin(place, free);
+  };
+  if (before && Math.abs(dot(plane.normal, before) - plane.distance) < SAME_PLANE * radius && isSeen(before)) return before;
   const nearest = nearestPoint(plane, center);
-  const place = placeIn(lens, nearest);
-  if (place && isWithin(place, free)) return nearest;
+  if (isSeen(nearest)) return nearest;
   const { camera, width, height } = lens;
   const x = (free.left + free.right) / width - 1;
   const y = (free.top + free.bottom) / height - 1;
@@ -58,7 +67,8 @@ export function footOf(lens, plane, { center, radius }, free) {
   return away > 0 && distance(seen, center) <= FARTHEST * radius ? seen : null;
 }
 
-const isWithin = ({ x, y }, { left, top, right, bottom }) => x >= left && x <= right && y >= top && y <= bottom;
+const isWithin = ({ x, y }, { left, top, right, bottom }) =>
+  x >= left + EDGE && x <= right - EDGE && y >= top + EDGE && y <= bottom - EDGE;
 
 /**
  * Which way in the view, as a unit vector, a point before the eye moves along a normal; `isFlat`: that is not to be

@@ -25,6 +25,8 @@ export class PlaneHandle {
   #drag = null;
   /** What a drag made of the plane, until the state says so. @type {?{plane: Plane, foot: number[]}} */
   #dragged = null;
+  /** Where the plane was taken hold of last. @type {?number[]} */
+  #foot = null;
   /** What waits to be sent. @type {?{name: string, plane: Plane}} */
   #next = null;
   /** The answer to the last change. @type {Promise<*>} */
@@ -41,6 +43,8 @@ export class PlaneHandle {
     for (const grip of svg.querySelectorAll('[data-grip]')) {
       grip.addEventListener('pointerdown', (event) => this.#begin(/** @type {PointerEvent} */ (event)));
       grip.addEventListener('pointermove', (event) => this.#move(/** @type {PointerEvent} */ (event)));
+      // Or Chromium drops a tap soon after a flick.
+      grip.addEventListener('touchmove', (event) => event.preventDefault(), { passive: false });
       for (const end of ['pointerup', 'pointercancel', 'lostpointercapture']) {
         grip.addEventListener(end, (event) => this.#end(/** @type {PointerEvent} */ (event)));
       }
@@ -49,7 +53,7 @@ export class PlaneHandle {
 
   /** Null: none. @param {?Shown} shown */
   show(shown) {
-    if (shown?.name !== this.#shown?.name) this.#drag = this.#dragged = null;
+    if (shown?.name !== this.#shown?.name) this.#drag = this.#dragged = this.#foot = null;
     this.#shown = shown;
     this.#draw();
   }
@@ -68,17 +72,25 @@ export class PlaneHandle {
 
   #arrow() {
     if (!this.#shown) return null;
-    const { lens, onWindow, plane } = this.#shown;
-    const foot = this.#dragged?.foot ?? footIn(this.#shown);
-    const arrow = foot && arrowOf(lens, foot, (this.#dragged?.plane ?? plane).normal);
+    const { lens, onWindow } = this.#shown;
+    const { plane, foot } = this.#dragged ?? this.#present(this.#shown);
+    const arrow = foot && arrowOf(lens, foot, plane.normal);
     return arrow && { ...arrow, ...onWindow(arrow) };
+  }
+
+  /** @param {Shown} shown */
+  #present({ lens, plane, bounds, free }) {
+    const scene = { center: centerOf(bounds), radius: distance(bounds.min, bounds.max) / 2 };
+    this.#foot = footOf(lens, plane, scene, free, this.#foot);
+    return { plane, foot: this.#foot };
   }
 
   #begin(event) {
     event.preventDefault();
-    const start = this.#shown && { ...this.#shown, plane: this.#dragged?.plane ?? this.#shown.plane };
-    const foot = start && (this.#dragged?.foot ?? footIn(start));
-    if (this.#drag || !foot || event.button !== 0) return;
+    if (this.#drag || !this.#shown || event.button !== 0) return;
+    const { plane, foot } = this.#dragged ?? this.#present(this.#shown);
+    if (!foot) return;
+    const start = { ...this.#shown, plane };
     const { currentTarget, pointerId, clientX: x, clientY: y } = event;
     currentTarget.setPointerCapture(pointerId);
     this.#drag = { pointerId, from: { x, y }, grip: currentTarget.dataset.grip, start, foot };
@@ -92,6 +104,7 @@ export class PlaneHandle {
     const dragged = grip === 'turn' ? turned(start, foot, by) : moved(start, foot, by);
     if (!dragged) return;
     this.#dragged = dragged;
+    this.#foot = dragged.foot;
     this.#send(start.name, dragged.plane);
     this.#draw();
   }
@@ -118,11 +131,6 @@ export class PlaneHandle {
     this.#dragged = null;
     this.#draw();
   }
-}
-
-/** @param {Shown} shown */
-function footIn({ lens, plane, bounds, free }) {
-  return footOf(lens, plane, { center: centerOf(bounds), radius: distance(bounds.min, bounds.max) / 2 }, free);
 }
 
 /**

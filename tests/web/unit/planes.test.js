@@ -93,6 +93,14 @@ describe('the handle of a plane', () => {
     assert.equal(footOf(lens, { normal: [0, 0, 1], distance: 20 }, scene, whole), null);
   });
 
+  test('stays where it was while that is on the plane and free', () => {
+    const before = [1, 0.5, 1];
+    assert.equal(footOf(lens, plane, scene, whole, before), before);
+    near(footOf(lens, { ...plane, distance: 1.1 }, scene, whole, before), [1.1, 1, 0]);
+    const free = freeOf(view, { top: 0, right: 0, bottom: 0, left: 1.2 * seen(before)[0] });
+    assert.notEqual(footOf(lens, plane, scene, free, before), before);
+  });
+
   test('its arrow lies along the normal as the camera sees that', () => {
     const foot = [1, 1, 0];
     const arrow = arrowOf(lens, foot, plane.normal);

@@ -207,7 +207,7 @@ export const cs = {
   'markers.noPart': 'Uprostřed pohledu není žádný díl.',
 
   'sections.title': 'Řezy',
-  'sections.across': 'Řez napříč osou',
+  'sections.across': 'Napříč',
   'sections.facing': 'Podle pohledu',
   'sections.face': 'Podle plochy',
   'sections.tapFace': 'Klepněte na plochu, podle které se má řezat. Escape výběr zruší.',

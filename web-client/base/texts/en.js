@@ -200,7 +200,7 @@ export const en = {
   'markers.noPart': 'There is no part in the middle of the view.',
 
   'sections.title': 'Sections',
-  'sections.across': 'Cut across',
+  'sections.across': 'Across',
   'sections.facing': 'Like the view',
   'sections.face': 'Through a face',
   'sections.tapFace': 'Tap the face to cut along. Escape gives that up.',
