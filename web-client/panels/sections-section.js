@@ -100,11 +100,11 @@ function adders({ commands, store, report, nextTap }, choose) {
       full,
     ],
     stop,
-    show: onChange(({ state }) => [state.sections], () => {
+    show: onChange(({ state, steers }) => [state.sections, steers], (_, steers) => {
       const why = isFull() ? say('sections.full') : '';
       if (full.textContent !== why) full.textContent = why;
       for (const one of [...across, facing, face]) {
-        one.ariaDisabled = String(isFull());
+        one.ariaDisabled = String(isFull() || !steers);
         one.title = why;
       }
     }),
@@ -171,10 +171,12 @@ function planeRow(name, { set, choose, turn, remove }) {
     children: [there, on.element, ...tools, editor],
     show({ plane, isChosen, limits }) {
       there.ariaPressed = String(isChosen);
+      const isNew = isChosen && editor.hidden;
       editor.hidden = !isChosen;
       on.show(plane.on);
       position.show(plane.distance, limits);
       caps.show(plane);
+      if (isNew) editor.scrollIntoView({ block: 'nearest' });
     },
   };
 }
@@ -226,8 +228,8 @@ function boxControls({ change }, state) {
     if (waiting === 0) corners = state().sectionBox;
   };
   const sides = AXES.flatMap((axis, i) => [
-    { corner: 'min', i, ...measure(say('sections.from', { axis }), (value) => move('min', i, value)) },
-    { corner: 'max', i, ...measure(say('sections.to', { axis }), (value) => move('max', i, value)) },
+    { corner: 'min', i, ...measure(say('sections.lower', { axis }), (value) => move('min', i, value)) },
+    { corner: 'max', i, ...measure(say('sections.upper', { axis }), (value) => move('max', i, value)) },
   ]);
   const on = toggle(say('sections.boxIsOn'), (value) => set({ on: value }));
   const caps = capControls(set);

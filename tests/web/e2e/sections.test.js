@@ -262,11 +262,11 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
       const { min, max } = structuredClone(state().sectionBox);
       await toggle('Show only what is in the box').tap();
       await until('on', () => state().sectionBox.on);
-      await slider('Z to').press('PageDown');
-      await slider('X from').press('PageUp');
+      await slider('Z max').press('PageDown');
+      await slider('X min').press('PageUp');
       await until('both', () => state().sectionBox.max[2] < max[2] && state().sectionBox.min[0] > min[0]);
       assert.deepEqual(state().sectionBox.min.slice(1), min.slice(1));
-      await slider('Y from').press('End');
+      await slider('Y min').press('End');
       await until('almost the upper side', () => state().sectionBox.min[1] > max[1] - 0.1);
       assert.ok(state().sectionBox.min[1] < state().sectionBox.max[1]);
       await tablet.screenshot(`sections-${name}-box`);
