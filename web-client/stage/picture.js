@@ -130,7 +130,11 @@ export class Picture {
     return viewMapping(this.#box, this.#view);
   }
 
-  /** How a camera's view lies on the window, whose pixels are `perPixel` of its own; null before the first frame. @param {Camera} camera */
+  /**
+   * How a camera's view lies on the window, whose pixels are `perPixel` of its own; null before the first frame.
+   *
+   * @param {Camera} camera
+   */
   lens(camera) {
     if (!this.header) return null;
     const { width, height } = this.#view;

@@ -108,7 +108,8 @@ export class Stage {
       ({ role, state, language }) => [role, state?.scene, state?.selection, state?.nodes, language],
       () => partBar.show(store.now));
     store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());
-    store.subscribe(({ steers, state, handled, inset }) => [steers, state?.sections, handled, inset], () => this.#showHandle());
+    store.subscribe(({ steers, state, handled, inset }) => [steers, state?.sections, handled, inset],
+      () => this.#showHandle());
     store.subscribe(({ state }) => [state?.scene?.notices, state?.notices],
       (...notices) => this.#passNotices(notices.flat().filter(Boolean)));
   }
@@ -214,8 +215,9 @@ export class Stage {
     const plane = name !== null && steers ? state?.sections[name] : undefined;
     const camera = this.#prediction.camera;
     const lens = camera && this.#picture.lens(camera);
-    this.#handle.show(plane?.on && lens && state
-      ? { ...lens, free: freeOf(lens.lens, inset), bounds: state.scene.bounds, name: /** @type {string} */ (name), plane } : null);
+    const isShown = name !== null && state && plane?.on && lens;
+    this.#handle.show(isShown
+      ? { ...lens, free: freeOf(lens.lens, inset), bounds: state.scene.bounds, name, plane } : null);
   }
 
   #flyOn() {

@@ -36,9 +36,10 @@ describe('a plane', () => {
   });
 
   test('turned round it is the same plane, and twice the same in all', () => {
-    const plane = { normal: [0, 0.6, 0.8], distance: 0 };
-    assert.deepEqual(flipped(plane), { normal: [0, -0.6, -0.8], distance: 0 });
-    assert.deepEqual(flipped(flipped({ ...plane, distance: 2 })), { ...plane, distance: 2 });
+    const plane = { normal: [0, 0.6, 0.8], distance: 2 };
+    assert.deepEqual(flipped(plane), { normal: [0, -0.6, -0.8], distance: -2 });
+    assert.deepEqual(flipped(flipped(plane)), plane);
+    assert.deepEqual(flipped({ ...plane, distance: 0 }).distance, 0);
   });
 
   test('across an axis takes the half with the eye away', () => {
