@@ -210,7 +210,7 @@ export const cs = {
   'sections.across': 'Napříč',
   'sections.facing': 'Podle pohledu',
   'sections.face': 'Podle plochy',
-  'sections.tapFace': 'Klepněte na plochu, podle které se má řezat. Výběr zruší Escape nebo totéž tlačítko.',
+  'sections.tapFace': 'Klepněte na plochu, podle které se má řezat.',
   'sections.noFace': 'Na tomto místě není žádný díl.',
   'sections.full': 'Rovin je šest, víc jich být nemůže.',
   'sections.planes': 'Roviny',

@@ -203,7 +203,7 @@ export const en = {
   'sections.across': 'Across',
   'sections.facing': 'Like the view',
   'sections.face': 'Through a face',
-  'sections.tapFace': 'Tap the face to cut along. Escape or the button cancels.',
+  'sections.tapFace': 'Tap the face to cut along.',
   'sections.noFace': 'There is no part at this place.',
   'sections.full': 'There are six planes, which is the most.',
   'sections.planes': 'Planes',
