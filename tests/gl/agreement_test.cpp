@@ -133,7 +133,7 @@ void check_sections(RendererFixture& studio, const std::string& name, plan::View
                 glm::dvec3 normal(0);
                 normal[axis] = sign;
                 planes.push_back({normal, glm::dot(normal, placed.bounds.center()) +
-                                              0.35 * placed.bounds.half_extent()[axis]});
+                                              0.75 * placed.bounds.half_extent()[axis]});
             }
         return planes;
     };
@@ -153,6 +153,11 @@ void check_sections(RendererFixture& studio, const std::string& name, plan::View
                               name + ", " + std::to_string(planes.size()) + " planes, " + variant.name,
                               variant, judge, expected);
     }
+    view.clip_planes = one;
+    view.mode = plan::DrawMode::stylized;
+    const JudgedReference judge = judge_of(view);
+    check_drawing(studio, name + ", stylized", {"as it is", view}, judge,
+                  ids_of(view, judge.picture.node, 1));
 }
 
 }  // namespace
