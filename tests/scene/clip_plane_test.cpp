@@ -11,7 +11,7 @@ using namespace vrut;
 
 namespace {
 
-const scene::ClipPlane kTop{{0, 1, 0}, 2}, kRight{{1, 0, 0}, 1}, kLeft{{-1, 0, 0}, 1};
+const scene::ClipPlane kTop{{0, 1, 0}, 2};
 
 bool is_shown(const std::vector<scene::ClipPlane>& planes, const glm::dvec3& point) {
     for (const scene::ClipPlane& plane : planes)
