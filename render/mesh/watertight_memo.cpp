@@ -9,7 +9,7 @@ namespace vrut::mesh {
 
 bool WatertightMemo::is_watertight(const std::shared_ptr<const scene::Scene>& scene, scene::Index geometry,
                                    const DetailLevels* levels) {
-    if (scene_ != scene) {
+    if (scene_.lock() != scene) {
         scene_ = scene;
         known_.assign(scene->geometries().size(), std::nullopt);
     }

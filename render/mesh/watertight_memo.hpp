@@ -19,8 +19,8 @@ public:
                        const DetailLevels* levels = nullptr);
 
 private:
-    std::shared_ptr<const scene::Scene> scene_;  // of what is known
-    std::vector<std::optional<bool>> known_;     // by geometry
+    std::weak_ptr<const scene::Scene> scene_;  // of what is known; not kept alive by it
+    std::vector<std::optional<bool>> known_;   // by geometry
 };
 
 }  // namespace vrut::mesh
