@@ -158,7 +158,7 @@ struct SectionState {
     bool operator==(const SectionState&) const = default;
 };
 
-/// A box along the world's axes outside of which nothing is shown.
+/// A box along the world's axes. Nothing outside it is shown.
 struct SectionBoxState {
     glm::dvec3 min{-1}, max{1};
     bool on = false;

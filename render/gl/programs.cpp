@@ -144,7 +144,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     if (variant.environment && !((reflective || variant.metallic_roughness) && features.environment_map))
         return false;
     if (variant.cap) return false;
-    // A mirror clips what it shows, which lies beside the eye that carries the headlight.
+    // A mirror clips what it shows, and the headlight is not at the eye of its view.
     if (variant.clip_planes == 0) return true;
     return variant.clip_planes == 1 && features.mirrors() && variant.light != Light::headlight &&
            variant.kind != Kind::edges && variant.kind != Kind::mirror;

@@ -62,7 +62,7 @@ std::vector<std::uint8_t> sides_of(const std::vector<glm::dvec3>& positions, con
     return result;
 }
 
-/// By its ends, of which `a` is lexicographically smaller: the same for both of its triangles.
+/// By its ends, the lexicographically smaller one first: the same for both of its triangles.
 struct CrossedEdge {
     glm::dvec3 a, b;
 
@@ -328,7 +328,7 @@ private:
         }
         return best;
     }
-    /// Those of which an odd number of sides is on a point's left.
+    /// Adds the loops that have an odd number of sides to the left of a point.
     void add_loops_around(const glm::dvec2& p, const ContourLoop& hole, const std::vector<LoopSide>& sides,
                           const EdgeRows& rows) {
         crossed_.clear();

@@ -72,7 +72,7 @@ export function selection(label, change) {
 /**
  * A number, in words by `say`; `logarithmic`, with `step` of its decimal exponent.
  *
- * @returns {Control} shows it, and other limits, in steps of which there are a thousand
+ * @returns {Control} shows a value; other limits are divided into a thousand steps
  */
 export function range(label, { min, max, logarithmic = false, step = 1, say }, change) {
   const toScale = logarithmic ? Math.log10 : Number;

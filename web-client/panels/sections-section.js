@@ -111,7 +111,7 @@ function adders({ commands, store, report, nextTap }, choose) {
   };
 }
 
-/** The planes, of which one is chosen: its controls are unfolded, and it has a handle in the picture. @param {Page} page */
+/** The planes. The chosen one has its controls unfolded, and a handle in the picture. @param {Page} page */
 function planeList({ commands, store, offer }) {
   const { change, patch } = commands;
   const state = () => stateOf(store);
