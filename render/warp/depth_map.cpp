@@ -62,6 +62,12 @@ std::optional<Divided> divided_of(const Parts& parts, int lowest, int highest) {
 
 /// Median of left, upper, and the plane through left, upper and upper left (Weinberger et al., "LOCO-I",
 /// 1996).
+int median_prediction(int left, int upper, int upper_left) {
+    const int low = std::min(left, upper), high = std::max(left, upper);
+    return std::max(low, std::min(high, left + upper - upper_left));
+}
+
+/// The same of a value in a map; at its edges the neighbour that is there.
 int predicted(std::span<const std::uint8_t> values, int columns, int column, int row) {
     const auto at = [&](int x, int y) {
         return static_cast<int>(values[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
@@ -69,14 +75,12 @@ int predicted(std::span<const std::uint8_t> values, int columns, int column, int
     };
     if (row == 0) return column == 0 ? 0 : at(column - 1, row);
     if (column == 0) return at(column, row - 1);
-    const int left = at(column - 1, row), upper = at(column, row - 1);
-    const int plane = left + upper - at(column - 1, row - 1);
-    return std::clamp(plane, std::min(left, upper), std::max(left, upper));
+    return median_prediction(at(column - 1, row), at(column, row - 1), at(column - 1, row - 1));
 }
 
 /// The difference of two values modulo 256, small ones of either sign as small ones without.
 char difference(int value, int predicted) {
-    const int wrapped = (value - predicted + 384) % 256 - 128;
+    const int wrapped = static_cast<std::int8_t>(static_cast<std::uint8_t>(value - predicted));
     return static_cast<char>(wrapped < 0 ? -2 * wrapped - 1 : 2 * wrapped);
 }
 std::uint8_t summed(int predicted, char difference) {
@@ -92,6 +96,39 @@ int predicted_near(std::span<const std::uint8_t> near, int columns, std::size_t 
 
 std::size_t size_of(int columns, int rows) {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+}
+
+/// Of each `far` from its prediction, row by row: predicted() would ask at each where the map's edges are.
+std::string far_differences(const DepthMap& map) {
+    const auto columns = static_cast<std::size_t>(map.columns);
+    std::string differences(map.far.size(), 0);
+    for (std::size_t x = 0; x < columns; ++x)
+        differences[x] = difference(map.far[x], x == 0 ? 0 : map.far[x - 1]);
+    for (std::size_t start = columns; start < map.far.size(); start += columns) {
+        const std::uint8_t *row = map.far.data() + start, *above = row - columns;
+        differences[start] = difference(row[0], above[0]);
+        for (std::size_t x = 1; x < columns; ++x)
+            differences[start + x] =
+                difference(row[x], median_prediction(row[x - 1], above[x], above[x - 1]));
+    }
+    return differences;
+}
+
+/// In the format of zlib. What is left of depths after prediction repeats in runs, and seldom in
+/// longer strings: a search for runs alone takes half of the time, and its result a few bytes less.
+std::string deflated(std::string_view plain) {
+    constexpr int kLevel = 3, kLargestWindow = 15, kMemory = 8;
+    z_stream stream{};
+    if (deflateInit2(&stream, kLevel, Z_DEFLATED, kLargestWindow, kMemory, Z_RLE) != Z_OK) return {};
+    std::string bytes(deflateBound(&stream, plain.size()), 0);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(plain.data()));
+    stream.avail_in = static_cast<uInt>(plain.size());
+    stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+    stream.avail_out = static_cast<uInt>(bytes.size());
+    const bool ended = deflate(&stream, Z_FINISH) == Z_STREAM_END;
+    bytes.resize(ended ? stream.total_out : 0);
+    deflateEnd(&stream);
+    return bytes;
 }
 
 /// An image's depth at the middle of each part of its blocks, in steps, rows from the top down.
@@ -218,24 +255,15 @@ DepthMap depth_map_of(std::span<const float> depth, int width, int height, doubl
 
 std::string encode(const DepthMap& map) {
     const std::size_t blocks = size_of(map.columns, map.rows);
-    std::string plain, edges((blocks + 7) / 8, 0), nearer, masks;
+    std::string edges((blocks + 7) / 8, 0), nearer, masks;
     for (std::size_t i = 0; i < blocks; ++i) {
-        const int column = static_cast<int>(i) % map.columns, row = static_cast<int>(i) / map.columns;
-        plain += difference(map.far[i], predicted(map.far, map.columns, column, row));
         if (map.near[i] == map.far[i]) continue;
         edges[i / 8] = static_cast<char>(edges[i / 8] | 1 << i % 8);
         nearer += difference(map.near[i], predicted_near(map.near, map.columns, i));
         masks += static_cast<char>(map.mask[i] & 0xff);
         masks += static_cast<char>(map.mask[i] >> 8);
     }
-    plain += edges + nearer + masks;
-    uLongf size = compressBound(plain.size());
-    std::string bytes(size, 0);
-    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(plain.data()),
-                  plain.size(), Z_BEST_SPEED) != Z_OK)
-        return {};
-    bytes.resize(size);
-    return bytes;
+    return deflated(far_differences(map) + edges + nearer + masks);
 }
 
 std::optional<DepthMap> decode(std::string_view bytes, int columns, int rows, double scale) {
