@@ -1,0 +1,145 @@
+#include "measurement/chain_shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "measurement/vectors.hpp"
+
+namespace vrut::measurement {
+
+namespace {
+
+constexpr std::size_t kFewestPoints = 5;
+constexpr double kTolerance = 1e-4;  // in radii
+constexpr double kLeastArc = 30 * std::numbers::pi / 180;
+constexpr double kLongestStep = 60 * std::numbers::pi / 180;
+constexpr double kStraightness = 1e-6;
+/// In squares of the points' extent: what spans less has no plane.
+constexpr double kLeastArea = 1e-6;
+
+/// Points about their mean, divided by their extent.
+struct Scaled {
+    glm::dvec3 mean{0};
+    double extent = 0;
+    std::vector<glm::dvec3> points;
+};
+
+std::optional<Scaled> scaled(std::span<const glm::dvec3> points) {
+    Scaled scaled;
+    const auto count = static_cast<double>(points.size());
+    for (const glm::dvec3& point : points) scaled.mean += (point - points[0]) / count;
+    scaled.mean += points[0];
+    for (const glm::dvec3& point : points)
+        scaled.extent = std::max(scaled.extent, safe_length(point - scaled.mean));
+    if (!(scaled.extent > 0) || !std::isfinite(scaled.extent)) return {};
+    scaled.points.reserve(points.size());
+    for (const glm::dvec3& point : points) scaled.points.push_back((point - scaled.mean) / scaled.extent);
+    return scaled;
+}
+
+/// The normal around which the points run counter-clockwise. None if they span no area.
+std::optional<glm::dvec3> normal_around(std::span<const glm::dvec3> points) {
+    glm::dvec3 area(0);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        area += glm::cross(points[i], points[(i + 1) % points.size()]);
+    const double length = glm::length(area);
+    if (!(length > kLeastArea)) return {};
+    return area / length;
+}
+
+struct FlatCircle {
+    glm::dvec2 center{0};
+    double radius = 0;
+};
+
+std::optional<FlatCircle> least_squares(std::span<const glm::dvec2> points) {
+    const auto count = static_cast<double>(points.size());
+    glm::dvec2 mean(0);
+    for (const glm::dvec2& p : points) mean += p / count;
+    double mean_square = 0;
+    for (const glm::dvec2& p : points) mean_square += glm::dot(p - mean, p - mean) / count;
+    double xx = 0, xy = 0, yy = 0;
+    glm::dvec2 right(0);
+    for (const glm::dvec2& p : points) {
+        const glm::dvec2 q = p - mean;
+        xx += q.x * q.x;
+        xy += q.x * q.y;
+        yy += q.y * q.y;
+        right += q * (0.5 * (glm::dot(q, q) - mean_square));
+    }
+    const double determinant = xx * yy - xy * xy;
+    if (!(determinant > 0)) return {};
+    const glm::dvec2 offset(right.x * yy - right.y * xy, right.y * xx - right.x * xy);
+    FlatCircle circle{mean + offset / determinant, 0};
+    for (const glm::dvec2& p : points) circle.radius += glm::distance(p, circle.center) / count;
+    return circle;
+}
+
+bool are_on(const FlatCircle& circle, std::span<const glm::dvec2> points) {
+    return std::all_of(points.begin(), points.end(), [&](const glm::dvec2& p) {
+        return std::abs(glm::distance(p, circle.center) - circle.radius) <= kTolerance * circle.radius;
+    });
+}
+
+/// How far the points run around the center, in radians; 0 if they turn back or leave out an arc.
+double arc_around(const glm::dvec2& center, std::span<const glm::dvec2> points, bool closed) {
+    double arc = 0;
+    const std::size_t steps = closed ? points.size() : points.size() - 1;
+    for (std::size_t i = 0; i < steps; ++i) {
+        const glm::dvec2 a = points[i] - center, b = points[(i + 1) % points.size()] - center;
+        const double step = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
+        if (!(step > 0 && step < kLongestStep)) return 0;
+        arc += step;
+    }
+    return arc;
+}
+
+}  // namespace
+
+std::optional<CirclePoints> fit_circle(std::span<const glm::dvec3> chain) {
+    if (chain.size() < kFewestPoints) return {};
+    const bool closed = chain.front() == chain.back();
+    const auto points = scaled(closed ? chain.first(chain.size() - 1) : chain);
+    if (!points || points->points.size() < kFewestPoints) return {};
+    const auto normal = normal_around(points->points);
+    if (!normal) return {};
+    const glm::dvec3& q = points->points[0];
+    const glm::dvec3 x = unit(q - *normal * glm::dot(*normal, q)), y = glm::cross(*normal, x);
+    double height = 0;
+    std::vector<glm::dvec2> flat;
+    flat.reserve(points->points.size());
+    for (const glm::dvec3& p : points->points) {
+        flat.emplace_back(glm::dot(x, p), glm::dot(y, p));
+        height = std::max(height, std::abs(glm::dot(*normal, p)));
+    }
+    const auto circle = least_squares(flat);
+    if (!circle || !(height <= kTolerance * circle->radius) || !are_on(*circle, flat)) return {};
+    const double arc = arc_around(circle->center, flat, closed);
+    if (!(arc > kLeastArc && arc < 2 * std::numbers::pi + kTolerance)) return {};
+    const glm::dvec3 center = points->mean + (x * circle->center.x + y * circle->center.y) * points->extent;
+    const glm::dvec2 to_first = glm::normalize(flat[0] - circle->center) * (circle->radius * points->extent);
+    return CirclePoints{center, center + x * to_first.x + y * to_first.y,
+                        center - x * to_first.y + y * to_first.x};
+}
+
+std::vector<Run> straight_runs(std::span<const glm::dvec3> chain, double rounding) {
+    std::vector<Run> runs;
+    const auto goes_on = [&](const Run& run, std::size_t next) {
+        const glm::dvec3 whole = chain[next] - chain[run.first], part = chain[run.last] - chain[run.first];
+        const double length = safe_length(whole);
+        const glm::dvec3 direction = unit(whole);
+        const double along = glm::dot(direction, part);
+        return along > 0 && along < length &&
+               safe_length(part - direction * along) <= kStraightness * length + rounding;
+    };
+    for (std::size_t next = 1; next < chain.size(); ++next) {
+        if (!runs.empty() && goes_on(runs.back(), next))
+            runs.back().last = next;
+        else
+            runs.push_back({next - 1, next});
+    }
+    return runs;
+}
+
+}  // namespace vrut::measurement

@@ -1,0 +1,222 @@
+#include "measurement/snap_candidates.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "measurement/chain_shapes.hpp"
+#include "measurement/vectors.hpp"
+
+namespace vrut::measurement {
+
+namespace {
+
+constexpr double kCoarse = 4;       // edges longer than so many radii of the cone
+constexpr double kCoplanar = 1e-6;  // sine of the angle between normals
+constexpr std::size_t kMostCoplanar = 64;
+constexpr double kSimilarity = 1e-9;
+/// Of coordinates: what files hold is often float. Of parts far from their origin it is less.
+constexpr double kFloatRounding = 1.2e-7, kFarthestInExtents = 1e3;
+
+double rounding_of(const std::vector<glm::dvec3>& points) {
+    double size = 0, extent = 0;
+    for (const glm::dvec3& point : points) {
+        size = std::max(size, largest(point));
+        extent = std::max(extent, largest(point - points[0]));
+    }
+    return kFloatRounding * std::min(size, kFarthestInExtents * extent);
+}
+
+/// True if it keeps all angles.
+bool is_similarity(const glm::dmat3& matrix) {
+    const glm::dmat3 square = glm::transpose(matrix) * matrix;
+    const double scale = square[0][0];
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!(std::abs(square[column][row] - (row == column ? scale : 0)) <= kSimilarity * scale))
+                return false;
+    return true;
+}
+
+/// What is a circle in the world, in the node's space.
+std::optional<CirclePoints> circle_in_world(const std::vector<glm::dvec3>& chain,
+                                            const glm::dmat3& world_from_node) {
+    if (is_similarity(world_from_node)) return fit_circle(chain);
+    std::vector<glm::dvec3> mapped;
+    mapped.reserve(chain.size());
+    for (const glm::dvec3& point : chain) mapped.push_back(world_from_node * (point - chain[0]));
+    auto circle = fit_circle(mapped);
+    if (!circle) return circle;
+    const glm::dmat3 back = glm::inverse(world_from_node);
+    for (glm::dvec3& point : *circle) point = chain[0] + back * point;
+    return circle;
+}
+
+class CandidateSearch {
+public:
+    CandidateSearch(const Neighborhood& around, const std::vector<Snap>& to)
+        : around_(around), mesh_(around.edges().mesh()), to_(to) {}
+
+    std::vector<Candidate> found() {
+        if (accepts(Snap::vertex)) add_vertices();
+        if (accepts(Snap::midpoint) || accepts(Snap::center) || accepts(Snap::edge))
+            for (const std::size_t index : around_.chains()) add_chain(around_.edges().chain(index));
+        const auto triangle = around_.hit_triangle();
+        if (triangle && accepts(Snap::loop)) add_loops(*triangle);
+        if (triangle && accepts(Snap::plane)) add_plane(*triangle);
+        if (accepts(Snap::point)) add(Rank::point, Snap::point, glm::dvec3(0), {around_.hit()});
+        return std::move(found_);
+    }
+
+private:
+    bool accepts(Snap snap) const {
+        return to_.empty() ? snap != Snap::loop : std::find(to_.begin(), to_.end(), snap) != to_.end();
+    }
+    /// What `to` names needs no length.
+    double coarse_length() const { return to_.empty() ? kCoarse * around_.radius() : 0; }
+    double length(unsigned from, unsigned to) const {
+        return safe_length(around_.relative(to) - around_.relative(from));
+    }
+
+    void add(Rank rank, Snap snap, const glm::dvec3& seen, std::vector<glm::dvec3> points) {
+        found_.push_back({rank, snap, around_.offset(seen), around_.depth(seen), seen, std::move(points)});
+    }
+
+    void add_vertices() {
+        std::map<unsigned, double> shortest_edges;  // by vertex
+        for (const unsigned triangle : around_.triangles()) {
+            const glm::uvec3& t = mesh_.triangles()[triangle];
+            for (int k = 0; k < 3; ++k) {
+                if (!around_.is_near(around_.relative(t[k]))) continue;
+                const double edge = std::min(length(t[k], t[(k + 1) % 3]), length(t[k], t[(k + 2) % 3]));
+                double& shortest = shortest_edges.emplace(t[k], edge).first->second;
+                shortest = std::min(shortest, edge);
+            }
+        }
+        for (const auto& [vertex, shortest] : shortest_edges) add_vertex(vertex, shortest);
+    }
+    void add_vertex(unsigned vertex, double shortest_edge) {
+        const bool is_corner = !to_.empty() || around_.edges().is_corner(vertex);
+        if (is_corner || shortest_edge > coarse_length())
+            add(is_corner ? Rank::corner : Rank::vertex, Snap::vertex, around_.relative(vertex),
+                {mesh_.positions()[vertex]});
+    }
+
+    void add_chain(std::span<const unsigned> vertices) {
+        std::vector<glm::dvec3> points;
+        points.reserve(vertices.size());
+        for (const unsigned vertex : vertices) points.push_back(mesh_.positions()[vertex]);
+        if (accepts(Snap::center))
+            if (const auto circle = circle_in_world(points, around_.world_from_node()))
+                return add_center(points, *circle);
+        if (!accepts(Snap::midpoint) && !accepts(Snap::edge)) return;
+        for (const Run& run : straight_runs(points, rounding_of(points)))
+            add_straight_edge(points[run.first], points[run.last]);
+    }
+
+    glm::dvec3 closest(const glm::dvec3& a, const glm::dvec3& b) const {
+        return glm::mix(a, b, around_.closest_to_ray(around_.relative(a), around_.relative(b)));
+    }
+
+    void add_center(const std::vector<glm::dvec3>& rim, const CirclePoints& circle) {
+        std::optional<glm::dvec3> best;
+        for (std::size_t i = 0; i + 1 < rim.size(); ++i) {
+            const glm::dvec3 seen = around_.relative(closest(rim[i], rim[i + 1]));
+            if (around_.is_near(seen) && (!best || around_.offset(seen) < around_.offset(*best))) best = seen;
+        }
+        if (best) add(Rank::center, Snap::center, *best, {circle.begin(), circle.end()});
+    }
+
+    void add_straight_edge(const glm::dvec3& a, const glm::dvec3& b) {
+        const glm::dvec3 middle = a + (b - a) * 0.5, seen_middle = around_.relative(middle);
+        const double length = safe_length(around_.relative(b) - around_.relative(a));
+        if (accepts(Snap::midpoint) && length > coarse_length() && around_.is_near(seen_middle))
+            add(Rank::midpoint, Snap::midpoint, seen_middle, {middle});
+        const glm::dvec3 point = closest(a, b), seen = around_.relative(point);
+        if (accepts(Snap::edge) && around_.is_near(seen)) add(Rank::edge, Snap::edge, seen, {point, a, b});
+    }
+
+    /// At most `limit` triangles that hang together with one, which is the first; `is_joined(half-edge)`
+    /// tells across which edges that have a twin.
+    template <typename IsJoined>
+    std::vector<unsigned> region(unsigned triangle, const IsJoined& is_joined, std::size_t limit) const {
+        std::vector<unsigned> region{triangle}, sorted = region;
+        for (std::size_t next = 0; next < region.size(); ++next)
+            for (unsigned half_edge = 3 * region[next]; half_edge < 3 * region[next] + 3; ++half_edge) {
+                const unsigned twin = mesh_.twin(half_edge);
+                if (twin == WeldedMesh::kNone || !is_joined(half_edge)) continue;
+                const auto place = std::lower_bound(sorted.begin(), sorted.end(), twin / 3);
+                if (place != sorted.end() && *place == twin / 3) continue;
+                if (region.size() == limit) return region;
+                sorted.insert(place, twin / 3);
+                region.push_back(twin / 3);
+            }
+        return region;
+    }
+
+    /// Of the smooth region that was hit.
+    void add_loops(unsigned hit_triangle) {
+        const MeshEdges& edges = around_.edges();
+        const std::vector<unsigned>& near = around_.triangles();
+        const auto is_smooth = [&](unsigned half_edge) {
+            return !edges.is_feature(half_edge) &&
+                   std::binary_search(near.begin(), near.end(), mesh_.twin(half_edge) / 3);
+        };
+        for (const unsigned triangle : region(hit_triangle, is_smooth, near.size()))
+            for (unsigned half_edge = 3 * triangle; half_edge < 3 * triangle + 3; ++half_edge)
+                if (edges.is_feature(half_edge)) add_loop(half_edge);
+    }
+    void add_loop(unsigned half_edge) {
+        const glm::dvec3& start = mesh_.positions()[mesh_.start_of(half_edge)];
+        const glm::dvec3& end = mesh_.positions()[mesh_.end_of(half_edge)];
+        const glm::dvec3 point = closest(start, end), seen = around_.relative(point);
+        if (around_.is_near(seen)) add(Rank::loop, Snap::loop, seen, {point, start, end});
+    }
+
+    glm::dvec3 area(unsigned triangle) const {
+        const glm::uvec3& t = mesh_.triangles()[triangle];
+        const glm::dvec3& a = mesh_.positions()[t.x];
+        return glm::cross(mesh_.positions()[t.y] - a, mesh_.positions()[t.z] - a);
+    }
+    std::vector<unsigned> coplanar(unsigned hit_triangle) const {
+        const glm::dvec3& normal = mesh_.normal(hit_triangle);
+        const auto is_coplanar = [&](unsigned half_edge) {
+            const glm::dvec3& other = mesh_.normal(mesh_.twin(half_edge) / 3);
+            return mesh_.agrees_with_twin(half_edge) && glm::dot(normal, other) > 0 &&
+                   sine(normal, other) <= kCoplanar;
+        };
+        return region(hit_triangle, is_coplanar, kMostCoplanar);
+    }
+    bool is_large(unsigned triangle) const {
+        const glm::uvec3& t = mesh_.triangles()[triangle];
+        return std::min({length(t.x, t.y), length(t.y, t.z), length(t.z, t.x)}) > coarse_length();
+    }
+    void add_plane(unsigned hit_triangle) {
+        const std::vector<unsigned> flat = coplanar(hit_triangle);
+        if (flat.size() < 2 && !is_large(hit_triangle)) return;
+        const unsigned widest = *std::max_element(flat.begin(), flat.end(), [&](unsigned a, unsigned b) {
+            return safe_length(area(a)) < safe_length(area(b));
+        });
+        const glm::uvec3& t = mesh_.triangles()[widest];
+        const std::vector<glm::dvec3>& positions = mesh_.positions();
+        const glm::dvec3& normal = mesh_.normal(widest);
+        const glm::dvec3 ab = positions[t.y] - positions[t.x], ac = positions[t.z] - positions[t.x];
+        const glm::dvec3 point = around_.hit() - normal * glm::dot(normal, around_.hit() - positions[t.x]);
+        if (sine(ab, ac) > kCoplanar)
+            add(Rank::plane, Snap::plane, glm::dvec3(0), {point, point + ab, point + ac});
+    }
+
+    const Neighborhood& around_;
+    const WeldedMesh& mesh_;
+    const std::vector<Snap>& to_;
+    std::vector<Candidate> found_;
+};
+
+}  // namespace
+
+std::vector<Candidate> snap_candidates(const Neighborhood& around, const std::vector<Snap>& to) {
+    return CandidateSearch(around, to).found();
+}
+
+}  // namespace vrut::measurement
