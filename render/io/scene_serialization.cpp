@@ -399,7 +399,7 @@ void require_ids_once(const Stream& stream, const std::vector<Item>& items) {
 template <class Stream>
 void serialize(Stream& stream, scene::SceneParts& parts) {
     stream.text(parts.name);
-    stream.number(parts.unit, 1e-12, 1e12);
+    serialize_optional(stream, parts.unit, [&](double& unit) { stream.number(unit, 1e-12, 1e12); });
     stream.list(parts.textures, [&](scene::Texture& texture) { serialize(stream, texture); });
     std::uint64_t pixels = 0;
     for (const scene::Texture& texture : parts.textures) pixels += texture.image.rgba.size() / 4;

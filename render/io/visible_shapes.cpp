@@ -49,7 +49,7 @@ void report_lost_nodes(const scene::Scene& scene, ConversionWarnings& warnings) 
         if (node.type == scene::NodeType::lod) warnings.add("a LOD node is replaced by its first child");
         if (node.type == scene::NodeType::sound) warnings.add("a sound is lost");
     }
-    if (scene.unit() != 1) warnings.add("the scene's unit is lost");
+    if (scene.unit().value_or(1) != 1) warnings.add("the scene's unit is lost");
 }
 
 void report_lost_tree(const scene::Scene& scene, ConversionWarnings& warnings) {

@@ -203,7 +203,7 @@ std::vector<double> extents_of(const Scene& scene) {
         if (bounds.empty()) continue;
         const glm::dvec3 half = math::transformed(world[i], bounds).half_extent();
         extents[geometry] =
-            std::max(extents[geometry], 2 * scene.unit() * std::max({half.x, half.y, half.z}));
+            std::max(extents[geometry], 2 * scene.unit().value_or(1) * std::max({half.x, half.y, half.z}));
     }
     return extents;
 }

@@ -191,7 +191,7 @@ struct SceneParts {
         std::size_t line = 0;  ///< of the file, for errors; 0 where it has none
     };
     std::string name;
-    double unit = 1;  ///< metres per unit: information for hosts
+    std::optional<double> unit = {};  ///< metres per unit; none where the file does not say
     std::vector<Texture> textures;
     std::vector<Material> materials;
     std::vector<Geometry> geometries;
@@ -218,7 +218,8 @@ public:
     static tl::expected<Scene, BuildError> build(SceneParts parts);
 
     const std::string& name() const { return name_; }
-    double unit() const { return unit_; }
+    /// Metres per unit; none where the file does not say.
+    std::optional<double> unit() const { return unit_; }
     const std::vector<Texture>& textures() const { return textures_; }
     const std::vector<Material>& materials() const { return materials_; }
     const std::vector<Geometry>& geometries() const { return geometries_; }
@@ -262,7 +263,7 @@ private:
     explicit Scene(Unlinked) {}
 
     std::string name_;
-    double unit_ = 1;
+    std::optional<double> unit_;
     std::vector<Texture> textures_;
     std::vector<Material> materials_;
     std::vector<Geometry> geometries_;

@@ -197,7 +197,7 @@ TEST_CASE("what a node leaves out") {
         "vrut-text 1 node 1 \"\" geometry end node 2 \"\" camera end node 3 \"\" light end node 4 \"\" "
         "switch end "
         "node 5 \"\" lod end node 6 \"\" background end");
-    CHECK(scene.unit() == 1);
+    CHECK_FALSE(scene.unit());
     CHECK(data_of<scene::GeometryData>(scene, 1).geometry == scene::kNone);
     CHECK(data_of<scene::GeometryData>(scene, 1).material == scene::kNone);
     const auto& camera = data_of<scene::CameraData>(scene, 2);

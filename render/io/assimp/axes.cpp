@@ -31,11 +31,13 @@ glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, bool z_u
     return glm::dmat4(1);
 }
 
-double metres_per_unit(const aiScene& scene, AssimpFormat format) {
-    float centimetres = 100;
-    if (format == AssimpFormat::fbx && scene.mMetaData != nullptr)
-        scene.mMetaData->Get("UnitScaleFactor", centimetres);
-    return std::isfinite(centimetres) && centimetres > 0 ? double{centimetres} / 100 : 1;
+std::optional<double> metres_per_unit(const aiScene& scene, AssimpFormat format) {
+    if (format == AssimpFormat::collada) return 1;
+    float centimetres = 0;
+    if (format != AssimpFormat::fbx || scene.mMetaData == nullptr) return {};
+    scene.mMetaData->Get("UnitScaleFactor", centimetres);
+    if (!std::isfinite(centimetres) || centimetres <= 0) return {};
+    return double{centimetres} / 100;
 }
 
 }  // namespace vrut::io

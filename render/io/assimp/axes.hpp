@@ -3,6 +3,7 @@
 #include <assimp/scene.h>
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "io/assimp/format.hpp"
 #include "io/conversion_warnings.hpp"
@@ -14,7 +15,8 @@ namespace vrut::io {
 glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, bool z_up,
                              ConversionWarnings& warnings);
 
-/// Returns metres per unit, if the file declares them and assimp 5.2 has not scaled by them; else 1.
-double metres_per_unit(const aiScene& scene, AssimpFormat format);
+/// Returns metres per unit of what assimp 5.2 has read: it scales Collada to metres. None where the file does
+/// not declare them.
+std::optional<double> metres_per_unit(const aiScene& scene, AssimpFormat format);
 
 }  // namespace vrut::io

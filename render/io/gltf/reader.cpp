@@ -40,6 +40,7 @@ public:
 
     scene::SceneParts convert() {
         parts_.name = path_.stem().string();
+        parts_.unit = 1;
         check_extensions(document_, warnings_);
         report_lists();
         convert_materials();

@@ -27,7 +27,7 @@ public:
     void write(const scene::Scene& scene, const std::string& comment) {
         text("vrut-text 1\n");
         write_comment(comment);
-        text("unit").number(scene.unit()).text("\n");
+        if (scene.unit()) text("unit").number(*scene.unit()).text("\n");
         for (const scene::Material& material : scene.materials()) write_material(material);
         for (const scene::Geometry& geometry : scene.geometries()) write_geometry(geometry);
         for (const scene::Node& node : scene.nodes()) write_node(scene, node);
