@@ -24,6 +24,7 @@ inline constexpr Number kAny{-std::numeric_limits<double>::max(), std::numeric_l
 inline constexpr Number kDuration{0, std::numeric_limits<double>::max()};
 inline constexpr double kHuge = kFarthest;
 inline constexpr Vector<glm::dvec3> kPosition{-kHuge, kHuge};
+inline constexpr List<Vector<glm::dvec3>> kLine{{kAny.min, kAny.max}, 0, kMaxLine};
 inline constexpr Vector<glm::dvec4> kColor{0, 1};
 inline constexpr Vector<glm::dvec4> kLightColor{0, kHuge};  // light may be brighter than white
 inline constexpr Vector<glm::dvec3> kAttenuation{0, kHuge};
@@ -46,12 +47,14 @@ inline constexpr auto kFormat = word("jpeg", "png");
 inline constexpr auto kStyle = word("vrut", "maya", "catia", "cinema4d");
 inline constexpr auto kTurnAbout = word("center", "touched");
 inline constexpr auto kUpAxis = word("y", "z");
+inline constexpr auto kSnap = word("point", "vertex", "midpoint", "center", "edge", "loop", "plane");
 
 // Definitions of the schema's own.
 inline constexpr Defined<Object<CameraOverlay>> kCameraOverlay{{}, "cameraOverlay"};
 inline constexpr Defined<Object<Quality>> kQuality{{}, "quality"};
 inline constexpr Defined<Object<Notice>> kNotice{{}, "notice"};
 inline constexpr Defined<Section<CameraState>> kCamera{{}, "camera"};
+inline constexpr Defined<Object<Feature>> kFeature{{}, "feature"};
 
 // --- client to server
 
@@ -174,6 +177,21 @@ void describe(V& v, const Patch*) {
 }
 
 template <class V>
+void describe(V& v, const Feature*) {
+    v.required("node", &Feature::node, kId, "The node whose surface it is on.");
+    v.required("snap", &Feature::snap, kSnap, "What it is.");
+    v.required("points", &Feature::points, List<Vector<glm::dvec3>>{kPosition, 1, 3},
+               "Of the node's own space: one, and for the last four kinds two more.");
+}
+
+template <class V>
+void describe(V& v, const SnapRequest*) {
+    v.required("within", &SnapRequest::within, Number{0, 100}, "CSS pixels from the point of the view.");
+    v.optional("to", &SnapRequest::to, List<decltype(kSnap)>{kSnap, 0, kSnaps},
+               "What may be found; empty: all but `loop`.");
+}
+
+template <class V>
 void describe(V& v, const Pick*) {
     v.required("x", &Pick::x, kCoordinate, "CSS pixels from the view's left edge.");
     v.required("y", &Pick::y, kCoordinate, "CSS pixels from the view's top edge.");
@@ -184,6 +202,8 @@ void describe(V& v, const Pick*) {
                "Select the node, make the point the centre of rotation, or look at it, too.");
     v.optional("through", &Pick::through, Flag{},
                "Pass transparent parts; the realistic mode always passes those of alpha 0.");
+    v.optional("snap", &Pick::snap, Object<SnapRequest>{},
+               "Find a corner, an edge or the like near by, too.");
 }
 
 template <class V>
@@ -326,6 +346,14 @@ void describe(V& v, const Ok*) {
 }
 
 template <class V>
+void describe(V& v, const Snapped*) {
+    v.required("feature", &Snapped::feature, kFeature, "To be one of the `picks` of a measure.");
+    v.required("point", &Snapped::point, Vector<glm::dvec3>{kAny.min, kAny.max},
+               "Its first point, in the world.");
+    v.required("line", &Snapped::line, kLine, "Of an edge, a circle or a loop, in the world; else empty.");
+}
+
+template <class V>
 void describe(V& v, const Picked*) {
     v.required("id", &Picked::id, kId, "Of the `pick`.");
     v.required("node", &Picked::node, kId, "The node that was hit.");
@@ -339,6 +367,7 @@ void describe(V& v, const Picked*) {
     v.required(
         "local", &Picked::local, Vector<glm::dvec3>{kAny.min, kAny.max},
         "The point in the node's own space, for a marker that moves with it; none of a flattened node.");
+    v.required("snapped", &Picked::snapped, Object<Snapped>{}, "What `snap` has found, if anything.");
 }
 
 template <class V>
@@ -618,6 +647,31 @@ void describe(V& v, const Marker*) {
 }
 
 template <class V>
+void describe(V& v, const MeasureState*) {
+    v.writable("kind", &MeasureState::kind, word("distance", "parallel", "angle", "radius", "length"),
+               "What is measured.");
+    v.writable("picks", &MeasureState::picks, List<Defined<Object<Feature>>>{kFeature, 1, 3},
+               "Where. A new measure must have them.");
+}
+
+template <class V>
+void describe(V& v, const MeasuredState*) {
+    v.fixed("value", &MeasuredState::value, kAny, "In the scene's unit, or degrees.");
+    v.fixed("components", &MeasuredState::components, Vector<glm::dvec3>{kAny.min, kAny.max},
+            "Of a distance: the way from the first pick to the second, in the world.");
+    v.fixed("line", &MeasuredState::line, kLine,
+            "To be drawn, in the world; empty where a part is not shown.");
+    v.fixed("problem", &MeasuredState::problem, kName, "Why there is no value, if there is none.");
+}
+
+template <class V>
+void describe(V& v, const UnitState*) {
+    v.writable("metres", &UnitState::metres, Number{1e-12, 1e12},
+               "Of one unit of the scene; as the file says, or 0.001.");
+    v.writable("shown", &UnitState::shown, word("mm", "cm", "m", "in"), "In what pages show lengths.");
+}
+
+template <class V>
 void describe(V& v, const SectionState*) {
     v.writable("normal", &SectionState::normal, kPosition,
                "Where it leads is cut away; unit, of any length but 0 in a patch. A new plane must have it.");
@@ -708,6 +762,11 @@ void describe(V& v, const State*) {
                "Planes that cut the scene open, by name.");
     v.writable("sectionBox", &State::section_box, Section<SectionBoxState>{},
                "A box that cuts the scene open.");
+    v.writable("measures", &State::measures, SharedTable<Entries<MeasureState>>{{{}, kMaxEntries, "picks"}},
+               "Distances, angles and the like, by name.");
+    v.fixed("measured", &State::measured, SharedTable<Table<MeasuredState>>{},
+            "What `measures` come to as the parts stand now, by name.");
+    v.writable("unit", &State::unit, Section<UnitState>{}, "Of lengths.");
     v.writable("quality", &State::quality, Section<QualityState>{},
                "How frames are drawn while things move.");
     v.fixed("control", &State::control, Object<ControlState>{}, "Who holds control, and who asks.");

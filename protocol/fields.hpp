@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "json_reader.hpp"
 
@@ -18,13 +19,20 @@ template <class T>
 struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
+template <class T>
+struct IsListOfWords : std::false_type {};
+template <class T>
+struct IsListOfWords<std::vector<T>> : std::is_enum<T> {};
 
 /// What a kind has read, as the member's own type.
 template <class Member, class Value>
 void assign(Member& member, Value&& value) {
     if constexpr (IsOptional<Member>::value)
         member = static_cast<typename Member::value_type>(std::forward<Value>(value));
-    else
+    else if constexpr (IsListOfWords<Member>::value) {
+        member.clear();
+        for (const std::size_t word : value) member.push_back(static_cast<typename Member::value_type>(word));
+    } else
         member = static_cast<Member>(std::forward<Value>(value));
 }
 

@@ -121,6 +121,7 @@ std::string json_schema() {
     defs["cameraOverlay"] = schema_of_struct<CameraOverlay>();
     defs["camera"] = schema_of_struct<CameraState>();
     defs["notice"] = schema_of_struct<Notice>();
+    defs["feature"] = schema_of_struct<Feature>();
     defs["quality"] = schema_of_struct<Quality>();
     defs["view"] = schema_of_struct<Resize>();
     defs["levelTable"] = schema_of_struct<LevelTable>();

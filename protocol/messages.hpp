@@ -26,6 +26,7 @@ inline constexpr std::size_t kMaxClientName = 100;
 inline constexpr std::size_t kMaxSceneName = 1000;  ///< bytes
 inline constexpr std::size_t kMaxScenes = 1000;     ///< in a list
 inline constexpr std::size_t kMaxChoices = 64;      ///< of a switch that tells of its children
+inline constexpr std::size_t kMaxLine = 64;         ///< points of a line that measures are drawn with
 /// Highest message id and revision: 2^53 - 1, exact in JSON.
 inline constexpr std::int64_t kMaxInteger = (std::int64_t{1} << 53) - 1;
 
@@ -127,6 +128,28 @@ struct Control {
     std::optional<std::string> client;  ///< to whom control is given, or who is declined
 };
 
+/// What a measure is taken at: a point of a surface, a corner of the mesh, the middle of a straight edge, the
+/// centre of a circle, a straight edge, a closed loop of edges, or a plane.
+enum class Snap { point, vertex, midpoint, center, edge, loop, plane };
+inline constexpr std::size_t kSnaps = 7;
+
+/// Its points are in the node's own space. `point`, `vertex` and `midpoint` have one. The others have two
+/// more: of a circle two on it, a quarter turn apart; of an edge its ends; of a loop the ends of one of its
+/// mesh edges, as they follow each other around the face that was hit; of a plane two that span it.
+struct Feature {
+    std::int64_t node = 0;
+    Snap snap = Snap::point;
+    std::vector<glm::dvec3> points;
+    bool operator==(const Feature&) const = default;
+};
+
+/// What a pick shall find beside the point that it hits.
+struct SnapRequest {
+    double within = 0;     ///< CSS pixels
+    std::vector<Snap> to;  ///< empty: all but loops
+    bool operator==(const SnapRequest&) const = default;
+};
+
 /// What is under a point of the view, now or as a frame showed it.
 struct Pick {
     enum class Then { select, center, look_at };
@@ -134,6 +157,7 @@ struct Pick {
     std::optional<std::int64_t> frame;  ///< none: the present view
     std::optional<Then> then;
     bool through = false;  ///< transparent parts are passed
+    std::optional<SnapRequest> snap = {};
 };
 
 /// Members of a camera, to be laid over another; `node` first.
@@ -250,6 +274,12 @@ struct Ok {
     std::optional<std::string> name;  ///< of the event log
 };
 
+struct Snapped {
+    Feature feature;
+    glm::dvec3 point{0};           ///< world: the feature's first
+    std::vector<glm::dvec3> line;  ///< world: what it looks like; kMaxLine
+};
+
 struct Picked {
     std::int64_t id = 0;
     // Where something was hit:
@@ -259,6 +289,7 @@ struct Picked {
     std::optional<glm::dvec3> point, normal;       ///< world; the normal is geometric, towards the viewer
     std::optional<double> distance;                ///< from the eye
     std::optional<glm::dvec3> local;               ///< the point in the node's own space, where that has one
+    std::optional<Snapped> snapped = {};           ///< also where nothing was hit, beside the point
 };
 
 struct Flown {

@@ -124,7 +124,7 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
 std::string kept_changes(const State& starting, const State& state) {
     Json changes = Json::object();
     const auto from = document_of(starting), to = document_of(state);
-    for (const char* section : {"views", "markers", "nodes"}) {
+    for (const char* section : {"views", "markers", "measures", "unit", "nodes"}) {
         Json diff = merge_diff(from->at(section), to->at(section));
         if (!diff.empty()) changes[section] = std::move(diff);
     }

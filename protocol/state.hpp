@@ -166,6 +166,31 @@ struct SectionBoxState {
     bool operator==(const SectionBoxState&) const = default;
 };
 
+/// `parallel`: the distance from a plane, or from a line, at right angles to it.
+enum class MeasureKind { distance, parallel, angle, radius, length };
+
+struct MeasureState {
+    MeasureKind kind = MeasureKind::distance;
+    std::vector<Feature> picks;
+    bool operator==(const MeasureState&) const = default;
+};
+
+/// What is measured.
+struct MeasuredState {                          // r
+    std::optional<double> value = {};           ///< in the scene's unit, or degrees
+    std::optional<glm::dvec3> components = {};  ///< of a distance, along the world's axes
+    std::vector<glm::dvec3> line = {};          ///< world: what it looks like; kMaxLine
+    std::optional<std::string> problem = {};    ///< why there is no value
+    bool operator==(const MeasuredState&) const = default;
+};
+
+struct UnitState {
+    double metres = 0.001;  ///< per unit of the scene
+    enum class Shown { mm, cm, m, in };
+    Shown shown = Shown::mm;  ///< by pages
+    bool operator==(const UnitState&) const = default;
+};
+
 /// A saved camera.
 struct ViewState {
     glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
@@ -230,6 +255,9 @@ struct State {
     SharedMap<ViewState> views;
     SharedMap<SectionState> sections;
     SectionBoxState section_box;
+    SharedMap<MeasureState> measures;
+    SharedMap<MeasuredState> measured;  // r: by the measure's name
+    UnitState unit;
     QualityState quality;
     ControlState control;
     SharedMap<ClientState> clients;  // r: the first kMaxListedClients
@@ -238,7 +266,7 @@ struct State {
     bool operator==(const State&) const = default;
 };
 
-/// Most markers, and most views.
+/// Most markers, most views and most measures.
 inline constexpr std::size_t kMaxEntries = 256;
 /// Most planes of sections.
 inline constexpr std::size_t kMaxSections = 6;
@@ -252,14 +280,15 @@ inline constexpr std::size_t kMaxNodes = 10'000;
 inline constexpr double kFarthest = 1e30;
 
 /// `state` after a merge patch (RFC 7396) of its members, or what is wrong with it: all or nothing. null
-/// gives a member back the value it has in `starting`, and removes entries of `nodes`, `markers` and `views`
-/// that are not there. Checks types, ranges and names of members; what needs the scene is the caller's.
+/// gives a member back the value it has in `starting`, and removes entries of `nodes`, `markers`, `views` and
+/// `measures` that are not there. Checks types, ranges and names of members; what needs the scene is the
+/// caller's.
 tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
 /// A patch from the text of a JSON object.
 tl::expected<Patch, Error> parse_patch(std::string_view text);
 
-/// The text of the patch that leads from `starting` to what is kept of a scene in `state`: its views, markers
-/// and nodes. "{}" where they are the same.
+/// The text of the patch that leads from `starting` to what is kept of a scene in `state`: its views,
+/// markers, measures, unit and nodes. "{}" where they are the same.
 std::string kept_changes(const State& starting, const State& state);
 
 /// The document of a state, as clients see it.

@@ -139,6 +139,7 @@ bool Room::handle_message(const std::string& client, const protocol::ClientMessa
 }
 
 void Room::update_visible() {
+    measure();
     auto markers = visible_.markers;
     if (shown_markers_ != state_.markers || visible_.scene != scene_) {
         shown_markers_ = state_.markers;

@@ -10,6 +10,7 @@
 
 #include "event_log.hpp"
 #include "frame_header.hpp"
+#include "measurement/mesh_edges.hpp"
 #include "mesh/picking.hpp"
 #include "mesh/watertight_memo.hpp"
 #include "message_table.hpp"
@@ -269,6 +270,8 @@ private:
     const Frame* find_frame(std::int64_t number) const;
     /// What of the present scene lies under a point of a frame's view, in CSS pixels.
     std::optional<mesh::Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
+    /// Through that point of the frame's view, from its eye.
+    mesh::Ray ray_at(const Frame& seen, double x, double y) const;
     void apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit);
     void select(scene::Index node);
     /// kNone where nothing is.
@@ -279,6 +282,14 @@ private:
         std::vector<scene::Id> ids;
     };
     Path path_of(scene::Index node) const;
+
+    // --- measures
+    /// What a pick with `snap` finds; none where nothing is near.
+    std::optional<protocol::Snapped> snapped_at(const Frame& seen, const protocol::Pick& pick) const;
+    /// What is wrong with measures that a patch has changed.
+    std::optional<protocol::Error> check_measures(const protocol::State& next) const;
+    /// Brings what is measured in line with the measures and the scene.
+    void measure();
 
     // --- hinges
     /// The node or the innermost above it that has a hinge; kNone where none has.
@@ -361,6 +372,9 @@ private:
     plan::View visible_;
     protocol::SharedMap<protocol::Marker> shown_markers_;  ///< whose marks are in visible_
     mutable mesh::WatertightMemo watertight_;
+    mutable measurement::MeshEdgesMemo mesh_edges_;
+    protocol::SharedMap<protocol::MeasureState> measured_of_;  ///< what the state's `measured` was made of
+    std::shared_ptr<const scene::PlacedScene> measured_in_;
     std::deque<Frame> frames_;  ///< the last kFramesRemembered
     std::int64_t newest_request_ = 0, newest_recording_ = 0;
     std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk

@@ -103,7 +103,8 @@ void Room::apply(const Received& received, const protocol::Pick& pick) {
         return reject(received, code::unknown_frame,
                       "frame " + std::to_string(*pick.frame) + " is not among the last " +
                           std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
-    const std::optional<mesh::Hit> hit = hit_at(named ? *named : present(), pick.x, pick.y, pick.through);
+    const Frame seen = named ? *named : present();
+    const std::optional<mesh::Hit> hit = hit_at(seen, pick.x, pick.y, pick.through);
     if (pick.then) {
         steer(received);
         if (*pick.then == Then::select)
@@ -124,6 +125,7 @@ void Room::apply(const Received& received, const protocol::Pick& pick) {
             if (std::isfinite(local.x + local.y + local.z)) picked.local = local;
         }
     }
+    if (pick.snap) picked.snapped = snapped_at(seen, pick);
     answer_with(received, picked);
 }
 
@@ -133,19 +135,22 @@ const Room::Frame* Room::find_frame(std::int64_t number) const {
     return found == frames_.end() ? nullptr : &*found;
 }
 
-std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, bool through) const {
+mesh::Ray Room::ray_at(const Frame& seen, double x, double y) const {
     const protocol::Resize& size = seen.view_size;
     const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
-    return mesh::pick(
-        *scene_, {seen.camera.eye, scene::direction_through(seen.camera, size.width / size.height, point)},
-        {.through_transparent = through,
-         .trees = loaded_.picking_trees.get(),
-         .mode = visible_.mode,
-         .clip_planes = visible_.clip_planes,
-         // At once, not once a thread has found it: a replay has to hit what was hit.
-         .is_solid = [this](scene::Index geometry) {
-             return watertight_.is_watertight(scene_->scene, geometry);
-         }});
+    return {seen.camera.eye, scene::direction_through(seen.camera, size.width / size.height, point)};
+}
+
+std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, bool through) const {
+    return mesh::pick(*scene_, ray_at(seen, x, y),
+                      {.through_transparent = through,
+                       .trees = loaded_.picking_trees.get(),
+                       .mode = visible_.mode,
+                       .clip_planes = visible_.clip_planes,
+                       // At once, not once a thread has found it: a replay has to hit what was hit.
+                       .is_solid = [this](scene::Index geometry) {
+                           return watertight_.is_watertight(scene_->scene, geometry);
+                       }});
 }
 
 void Room::apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit) {

@@ -26,6 +26,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (!error) error = use_camera(*next, *placed, protocol::named_camera_members(*patch.patch));
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
+    if (!error) error = check_measures(*next);
     if (error) return reject(received, error->code.c_str(), error->message);
 
     const protocol::ViewState home = state_.views->at("home");
@@ -40,20 +41,23 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     scene_ = std::move(placed);
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     gestures_.restart(camera());
+    measure();
     answer(received);
 }
 
 std::optional<Error> Room::use_changes() {
     const auto patch = protocol::parse_patch(loaded_.changes);
     if (!patch) return patch.error();
-    if (!protocol::names_only(*patch->patch, {"views", "markers", "nodes"}))
-        return Error{{}, code::bad_message, "it names other members than views, markers and nodes"};
+    if (!protocol::names_only(*patch->patch, {"views", "markers", "measures", "unit", "nodes"}))
+        return Error{
+            {}, code::bad_message, "it names other members than views, markers, measures, unit and nodes"};
     auto next = protocol::patched(state_, starting_, *patch->patch);
     if (!next) return next.error();
     std::shared_ptr<const scene::PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
+    if (!error) error = check_measures(*next);
     if (error) return error;
     state_ = *std::move(next);
     scene_ = std::move(placed);

@@ -176,6 +176,7 @@ protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
     add_lights(scene, state.lights);
     add_backgrounds(placed, state.camera.eye, state.backgrounds);
     if (!placed.bounds.empty()) state.section_box = box_around(placed.bounds);
+    state.unit.metres = placed.scene->unit().value_or(state.unit.metres);
     count_classes(state, placed);
     return state;
 }

@@ -412,6 +412,10 @@ TEST_CASE("messages to clients") {
     CHECK(encode(Error{{}, "busy", "bad \xff"}).find("\xef\xbf\xbd") != std::string::npos);
     CHECK(encode(Ok{5, 12, "drive"}) == R"({"id":5,"name":"drive","revision":12,"type":"ok"})");
     CHECK(encode(Picked{4, {}, {}, {}, {}, {}, {}, {}}) == R"({"id":4,"type":"picked"})");
+    CHECK(encode(Picked{
+              4, {}, {}, {}, {}, {}, {}, {}, Snapped{{7, Snap::midpoint, {{1, 2, 3}}}, {4, 5, 6}, {}}}) ==
+          R"({"id":4,"snapped":{"feature":{"node":7,"points":[[1.0,2.0,3.0]],"snap":"midpoint"},"line":[],)"
+          R"("point":[4.0,5.0,6.0]},"type":"picked"})");
     CHECK(
         encode(Picked{4, 7, "Door", {{"Car", "Door"}}, {{1, 2, 3}}, {{0, 0, 1}}, 5, {{1, 2, 0}}}) ==
         R"({"distance":5.0,"id":4,"local":[1.0,2.0,0.0],"name":"Door","node":7,"normal":[0.0,0.0,1.0],"path":["Car","Door"],)"

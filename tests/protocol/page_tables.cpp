@@ -72,6 +72,7 @@ std::string reference(const std::string& name) {
         {"camera", "[camera](STATE.md#camera)"},
         {"cameraOverlay", "[camera members](CLIENT_MESSAGES.md#camera-members)"},
         {"clientMessage", "[client message](CLIENT_MESSAGES.md)"},
+        {"feature", "[feature](STATE.md#features)"},
         {"notice", "[notice](STATE.md#notices)"},
         {"quality", "[quality](FRAMES.md#quality)"},
         {"stateDocument", "[state document](STATE.md)"},

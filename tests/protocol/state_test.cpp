@@ -129,6 +129,9 @@ TEST_CASE("what is patched has the value that was given") {
         "views": {"side": {"eye": [5,0,0], "focus": [1,0,0], "up": [0,0,1], "center": [2,0,0], "fov": 60, "order": -1.5}},
         "sections": {"cut": {"normal": [0,0,-2], "distance": 1.5, "on": false, "caps": false, "hatched": true}},
         "sectionBox": {"min": [-1,-2,-3], "max": [1,2,3], "on": true, "caps": false, "hatched": true},
+        "measures": {"gap": {"kind": "length", "picks": [
+            {"node": 3, "snap": "edge", "points": [[1,2,3],[0,0,0],[4,5,6]]}]}},
+        "unit": {"metres": 0.0254, "shown": "in"},
         "quality": {"preference": 0.25, "latencyTargetMs": 20}})");
     State expected = start();
     expected.camera.node = 4;
@@ -150,6 +153,8 @@ TEST_CASE("what is patched has the value that was given") {
     expected.views.set("side", {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60, -1.5});
     expected.sections.set("cut", {{0, 0, -1}, 1.5, false, false, true});
     expected.section_box = {{-1, -2, -3}, {1, 2, 3}, true, false, true};
+    expected.measures.set("gap", {MeasureKind::length, {{3, Snap::edge, {{1, 2, 3}, {0, 0, 0}, {4, 5, 6}}}}});
+    expected.unit = {0.0254, UnitState::Shown::in};
     expected.quality = {0.25, 20};
     CHECK(state == expected);
 }
@@ -233,6 +238,16 @@ const std::vector<Member> kMembers = {
     {"/sectionBox/on", {"true", "false"}, kNoFlag, {}},
     {"/sectionBox/caps", {"true", "false"}, kNoFlag, {}},
     {"/sectionBox/hatched", {"true", "false"}, kNoFlag, {}},
+    {"/measures/gap/kind",
+     {"\"distance\"", "\"parallel\"", "\"angle\"", "\"radius\"", "\"length\""},
+     kNoText,
+     {"\"\"", "\"Angle\""}},
+    {"/measures/gap/picks",
+     {R"([{"node":0,"snap":"loop","points":[[1,2,3],[0,0,0],[1e30,1,1]]}])"},
+     {"5", "true", "{}", "\"x\""},
+     {"[]"}},
+    {"/unit/metres", {"1e-12", "1e12"}, kNoNumber, {"0", "1.1e12", "-1"}},
+    {"/unit/shown", {"\"mm\"", "\"cm\"", "\"m\"", "\"in\""}, kNoText, {"\"\"", "\"km\""}},
     {"/quality/preference", {"0", "1"}, kNoNumber, {"-0.01", "1.01"}},
     {"/quality/latencyTargetMs", {"1", "10000"}, kNoNumber, {"0.9", "10001"}},
 };
@@ -242,6 +257,7 @@ const std::vector<const char*> kReadOnly = {"/scene",
                                             "/materials",
                                             "/control",
                                             "/recording",
+                                            "/measured",
                                             "/notices",
                                             "/camera/name",
                                             "/camera/near",
@@ -257,7 +273,8 @@ const std::vector<const char*> kReadOnly = {"/scene",
                                             "/renderer/reflective"};
 
 State with_entries() {
-    return after(start(), R"({"markers":{"here":{"point":[1,2,3]}},"sections":{"cut":{"normal":[0,0,1]}}})");
+    return after(start(), R"({"markers":{"here":{"point":[1,2,3]}},"sections":{"cut":{"normal":[0,0,1]}},
+        "measures":{"gap":{"picks":[{"node":1,"snap":"point","points":[[1,2,3]]}]}}})");
 }
 
 json patch_at(const std::string& path, const json& value) {
@@ -357,6 +374,9 @@ TEST_CASE("sections and entries are objects") {
                              "/sections",
                              "/sections/new",
                              "/sectionBox",
+                             "/measures",
+                             "/measures/new",
+                             "/unit",
                              "/quality"})
         for (const json& value : {json(1), json(true), json("x"), json::array()})
             check_refused(patch_at(path, value), "bad-message", dotted(path));
@@ -409,6 +429,27 @@ TEST_CASE("there are six planes of sections at most") {
     CHECK(seventh.error().code == "too-many");
     CHECK(seventh.error().message.find("6 entries") != std::string::npos);
     CHECK(patched(state, start(), json::parse(R"({"sections":{"1":null,"7":{"normal":[1,0,0]}}})")));
+}
+
+TEST_CASE("picks of a measure: types and ranges") {
+    const auto refused = [](const char* pick, const char* code, const char* culprit) {
+        check_refused(json::parse("{\"measures\":{\"new\":{\"picks\":[" + std::string(pick) + "]}}}"), code,
+                      culprit);
+    };
+    refused("5", "bad-message", "'measures.new.picks[0]'");
+    refused(R"({"node":1,"snap":"point"})", "bad-message", "'measures.new.picks[0].points'");
+    refused(R"({"snap":"point","points":[[1,2,3]]})", "bad-message", "'measures.new.picks[0].node'");
+    refused(R"({"node":1,"snap":"point","points":[1,2,3]})", "bad-message",
+            "'measures.new.picks[0].points[0]'");
+    refused(R"({"node":-1,"snap":"point","points":[[1,2,3]]})", "out-of-range",
+            "'measures.new.picks[0].node'");
+    refused(R"({"node":1,"snap":"corner","points":[[1,2,3]]})", "out-of-range",
+            "'measures.new.picks[0].snap'");
+    refused(R"({"node":1,"snap":"point","points":[]})", "out-of-range", "'measures.new.picks[0].points'");
+    refused(R"({"node":1,"snap":"point","points":[[1,2,1.1e30]]})", "out-of-range",
+            "'measures.new.picks[0].points[0]'");
+    const std::string pick = R"({"node":1,"snap":"point","points":[[1,2,3]]})";
+    refused((pick + "," + pick + "," + pick + "," + pick).c_str(), "out-of-range", "'measures.new.picks'");
 }
 
 TEST_CASE("the section box has a size in each direction") {
@@ -492,6 +533,12 @@ TEST_CASE("names and numbers of entries are bounded") {
     CHECK(after(start(), views.dump().c_str()).views->size() == 256);  // with home
     views["views"]["v255"] = json::object();
     check_refused(views, "too-many", "'views'");
+    json measures = {{"measures", json::object()}};
+    const json pick = json::parse(R"({"picks":[{"node":1,"snap":"point","points":[[1,2,3]]}]})");
+    for (int i = 0; i < 257; ++i) measures["measures"]["m" + std::to_string(i)] = pick;
+    check_refused(measures, "too-many", "'measures'");
+    check_refused(json::parse(R"({"measures":{"new":{"kind":"angle"}}})"), "bad-message",
+                  "'measures.new.picks'");
 
     const std::string longest(100, 'n'), longer(101, 'n'),
         accents = "žžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžž";
@@ -610,7 +657,7 @@ public:
             result = *taken;
         }
         // What the server itself changes.
-        switch (below(8)) {
+        switch (below(9)) {
             case 0:
                 result.recording = RecordingState{"log" + std::to_string(below(3))};
                 break;
@@ -632,6 +679,9 @@ public:
             case 6:
                 change_scene(result);
                 break;
+            case 7:
+                result.measured.set("n" + std::to_string(below(4)), {1.5, {{1, 0, 0}}, {{1, 2, 3}}, {}});
+                break;
             default:
                 break;
         }
@@ -647,7 +697,8 @@ private:
         const std::string value = member.good[below(member.good.size())];
         if (below(4) == 0) {  // null at some level
             for (std::size_t up = below(3); up > 0 && path.rfind('/') != 0; --up) path.erase(path.rfind('/'));
-            const bool of_new = path.starts_with("/markers/here/") || path.starts_with("/sections/cut/");
+            const bool of_new = path.starts_with("/markers/here/") || path.starts_with("/sections/cut/") ||
+                                path.starts_with("/measures/gap/");
             return of_new ? json::object() : patch_at(path, nullptr);
         }
         const std::string name = "n" + std::to_string(below(4));
@@ -655,6 +706,11 @@ private:
             return {{"markers", {{name, {{"point", {1, 2, below(3)}}, {"text", name}}}}}};
         if (path.starts_with("/sections/"))
             return {{"sections", {{name, {{"normal", {1, 0, below(3)}}, {"distance", below(3)}}}}}};
+        if (path.starts_with("/measures/")) {
+            const json pick = {
+                {"node", below(3)}, {"snap", "vertex"}, {"points", json::array({{1, 2, below(3)}})}};
+            return {{"measures", {{name, {{"kind", "distance"}, {"picks", json::array({pick, pick})}}}}}};
+        }
         if (path.starts_with("/views/") && below(2) == 0) return {{"views", {{name, json::object()}}}};
         if (path.starts_with("/nodes/")) path.replace(7, 1, std::to_string(below(3)));
         return patch_at(path, json::parse(value));
@@ -720,6 +776,7 @@ TEST_CASE("a state comes back from its document") {
             starting.selection.name = state.selection.name, starting.selection.path = state.selection.path;
             starting.selection.path_ids = state.selection.path_ids;
             starting.recording = state.recording;
+            starting.measured = state.measured;
             const json document = json::parse(StateDocument::next({}, state)->json().dump());
             const auto back = restored(starting, document);
             REQUIRE_MESSAGE(back.has_value(), back.error().message);

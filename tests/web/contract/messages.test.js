@@ -64,7 +64,7 @@ const MESSAGES = {
   pick: {
     right: { x: 1, y: 1 },
     required: { x: { type: NUMBER }, y: { type: NUMBER } },
-    optional: { frame: { type: NUMBER, range: [1.5] }, then: { type: WORD, range: ['dance'] }, through: { type: FLAG } },
+    optional: { frame: { type: NUMBER, range: [1.5] }, then: { type: WORD, range: ['dance'] }, through: { type: FLAG }, snap: { type: OBJECT } },
   },
   snapshot: {
     right: { width: 8, height: 8 },
