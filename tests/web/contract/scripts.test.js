@@ -249,6 +249,22 @@ describe('pick', () => {
     assert.equal((await pick(client, projected({ ...POSE, eye: [0, 0, 30] }, VIEW, [0, -1.5, 0]))).node, 16);
   });
 
+  test('snap finds corners and edges near by, and what kinds are asked for', async (t) => {
+    const client = await steering(t, server);
+    const at = (point) => projected(POSE, VIEW, point);
+    const snapped = async (point, snap) => (await pick(client, at(point), { snap })).snapped;
+    const corner = await snapped([1.45, 0.47, 0], { within: 16 });
+    assert.deepEqual(corner.feature, { node: 4, snap: 'vertex', points: [[0.5, 0.5, 0]] });
+    near(corner.point, [1.5, 0.5, 0], 'in the world');
+    const beside = await snapped([1.55, 0.2, 0], { within: 16, to: ['edge'] });
+    assert.deepEqual([beside.feature.node, beside.feature.snap, beside.feature.points.length], [4, 'edge', 3], 'beside the door');
+    near(beside.line.flat(), [1.5, -0.5, 0, 1.5, 0.5, 0], 'the whole edge');
+    assert.equal((await snapped([1, 0, 0], { within: 0 })).feature.snap, 'plane');
+    assert.equal((await snapped([1, 0, 0], { within: 4, to: ['vertex'] })), undefined);
+    assert.equal((await snapped([1.49, 0.1, 0], { within: 8, to: ['loop'] })).feature.snap, 'loop');
+    await client.refused({ type: 'pick', x: 1, y: 1, snap: { within: 101 } }, 'out-of-range');
+  });
+
   test('uses the camera of the frame, the present one if left out', async (t) => {
     const client = await steering(t, server);
     const { frame } = (await client.frameOfNow()).header;

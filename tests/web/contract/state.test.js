@@ -54,13 +54,15 @@ const WRITABLE = {
   'sectionBox/on': FLAG,
   'sectionBox/caps': FLAG,
   'sectionBox/hatched': FLAG,
+  'unit/metres': { good: [0.001, 1e-12, 1e12, 0.0254], range: [0, -1, 1.1e12], type: ['1', [], {}, true] },
+  'unit/shown': { good: ['mm', 'cm', 'm', 'in'], range: ['km', ''], type: [1, [], {}, true] },
   'quality/preference': { good: [0, 1, 0.25], range: [-0.01, 1.01], type: ['1', [], {}, true] },
   'quality/latencyTargetMs': { good: [100], range: [-1], type: ['100', [], {}, true] },
 };
 const READ_ONLY = [
   'scene', 'scene/name', 'scene/nodes', 'scene/bounds', 'scene/notices', 'camera/name', 'camera/near', 'camera/far', 'cameras', 'cameras/11/name',
   'renderer/solid', 'renderer/transparent', 'renderer/reflective', 'lights/items/9/name', 'lights/items/9/type', 'materials', 'materials/1/name',
-  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'control/absent', 'control/asking', 'clients', 'recording',
+  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'control/absent', 'control/asking', 'clients', 'recording', 'measured',
 ];
 const UNKNOWN = [
   'weather', 'camera/roll', 'navigation/speed', 'renderer/shadow', 'lights/ambient', 'lights/items/9/angle', 'backgrounds/image',
@@ -73,7 +75,7 @@ test('the document has every member that the contract names, and no null', async
   const present = [
     ...Object.keys(WRITABLE).filter((path) => path !== 'selection/node'),
     ...READ_ONLY.filter((path) => !['selection/name', 'selection/path', 'control/holder', 'recording'].includes(path)),
-    'nodes', 'markers', 'views', 'sections', 'selection', 'camera/node',
+    'nodes', 'markers', 'views', 'sections', 'measures', 'selection', 'camera/node',
   ];
   assert.deepEqual(present.filter((path) => at(state, path) === undefined), []);
 });
@@ -122,6 +124,75 @@ test('the camera at the start is that of the first camera node', async (t) => {
   const { camera } = (await ContractClient.join(t, fresh, { role: 'view' })).state;
   assert.deepEqual([camera.node, camera.name, camera.eye, camera.focus, camera.up, camera.fov], [11, 'Presenter', [0, 0, 8], [0, 0, 0], [0, 1, 0], 40]);
   assert.ok(camera.near > 0 && camera.near < 7 && camera.far >= 9, `${camera.near} to ${camera.far}`);
+});
+
+describe('measures', () => {
+  const point = (node, ...points) => ({ node, snap: 'point', points });
+  const edge = (node, x) => ({ node, snap: 'edge', points: [[x, 0, 0], [x, -0.5, 0], [x, 0.5, 0]] });
+  const cleared = async (t) => {
+    const client = await steering(t, server);
+    await client.patch({ measures: null, nodes: null, unit: null });
+    return client;
+  };
+
+  test('a measure tells its value, components and line, and moves with its parts', async (t) => {
+    const client = await cleared(t);
+    const picks = [point(4, [-0.5, 0, 0]), point(2, [0, 0.5, 0])];  // the door and the wall, 4 times as large
+    await client.patch({ measures: { Gap: { kind: 'distance', picks } } });
+    assert.deepEqual(client.state.measures, { Gap: { kind: 'distance', picks } });
+    const { value, components, line } = client.state.measured.Gap;
+    near(value, Math.hypot(0.5, 2, 1), 'the distance');
+    near(components, [-0.5, 2, -1], 'from the first to the second');
+    near(line[0], [0.5, 0, 0], 'where it begins');
+    const before = client.state.nodes;
+    await client.patch({ nodes: { 4: { matrix: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, -1, 0, 0, 0, 1] } } });
+    near(client.state.measured.Gap.components[2], 0, 'the door is in the wall\'s plane');
+    await client.patch({ nodes: { 4: { active: false } } });
+    assert.deepEqual([client.state.measured.Gap.line, typeof client.state.measured.Gap.value], [[], 'number'], 'a hidden part');
+    await client.patch({ nodes: null });
+    assert.deepEqual(client.state.nodes, before);
+    assert.deepEqual(client.state.measured.Gap, { value, components, line });
+    await client.patch({ measures: { Gap: null } });
+    assert.deepEqual([client.state.measures, client.state.measured], [{}, {}]);
+  });
+
+  test('each kind, as closed forms have it', async (t) => {
+    const client = await cleared(t);
+    const loop = { node: 4, snap: 'loop', points: [[0.5, 0, 0], [0.5, -0.5, 0], [0.5, 0.5, 0]] };
+    const [a, b, c] = [point(4, [1, 0, 0]), point(4, [0, 1, 0]), point(4, [-1, 0, 0])];
+    for (const [kind, picks, value] of [
+      ['parallel', [edge(4, 0.5), edge(4, -0.5)], 1],
+      ['parallel', [edge(4, 0.5), c], 1.5],
+      ['angle', [a, b, c], 90],
+      ['angle', [edge(4, 0.5), edge(2, 0.5)], 0],
+      ['radius', [a, b, c], 1],
+      ['length', [edge(4, 0.5)], 1],
+      ['length', [loop], 4],
+    ]) {
+      await client.patch({ measures: { One: { kind, picks } } });
+      near(client.state.measured.One.value, value, `${kind}: ${JSON.stringify(client.state.measured.One)}`);
+    }
+    await client.patch({ measures: null });
+  });
+
+  test('what cannot be measured is refused and changes nothing; what no longer can tells why', async (t) => {
+    const client = await cleared(t);
+    await client.patch({ measures: { Gap: { kind: 'parallel', picks: [edge(4, 0.5), edge(4, -0.5)] } } });
+    const before = JSON.stringify(client.state);
+    const refused = (measure, code, valid = true) =>
+      client.refused({ type: 'patch', patch: { measures: { New: measure } } }, code, { valid });
+    assert.match((await refused({ picks: [point(4, [0, 0, 0])] }, 'out-of-range')).message, /2 picks, not 1/);
+    assert.match((await refused({ picks: [point(999, [0, 0, 0]), point(4, [0, 0, 0])] }, 'unknown-node')).message, /'measures.New'.*999/);
+    await refused({ kind: 'radius', picks: [edge(4, 0.5)] }, 'out-of-range');
+    await refused({ kind: 'length', picks: [{ node: 4, snap: 'edge', points: [[0, 0, 0]] }] }, 'out-of-range');
+    await refused({ kind: 'volume', picks: [point(4, [0, 0, 0])] }, 'out-of-range', false);
+    await refused({ kind: 'angle' }, 'bad-message');
+    assert.equal(JSON.stringify(client.state), before);
+    await client.patch({ measures: { Gap: { picks: [edge(4, 0.5), { ...edge(4, -0.5), points: [[-0.5, 0, 0], [-0.5, 0, 0], [0.5, 0.1, 0]] }] } } });
+    assert.equal(client.state.measured.Gap.value, undefined);
+    assert.match(client.state.measured.Gap.problem, /not parallel.*degrees/);
+    await client.patch({ measures: null });
+  });
 });
 
 describe('sections', () => {
