@@ -338,6 +338,7 @@ private:
 
     scene::Scene assemble() {
         scene::SceneParts result;
+        result.unit = 1;  // cages are in metres
         result.materials = cages_.materials;
         std::map<const BodyPart*, scene::Index> place;
         for (BodyPart& part : parts_) {

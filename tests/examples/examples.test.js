@@ -154,6 +154,7 @@ test('each script tells its usage', async () => {
   assert.match(await succeeds(python('orbit.py', '--help')), /--steps/);
   assert.match(await succeeds(python('door.py', '--help')), /--open/);
   assert.match(await succeeds(python('sweep.py', '--help')), /--normal/);
+  assert.match(await succeeds(python('gaps.py', '--help')), /--second/);
   assert.match(await succeeds(snapshot('--help')), /--camera/);
   assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
   assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
@@ -163,7 +164,7 @@ test('each script tells its usage', async () => {
 });
 
 test('a wrong token is told in a sentence', async () => {
-  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []]]) {
+  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []], ['gaps.py', []]]) {
     const result = await python(script, ...args, '--token', 'guess');
     assert.equal(result.status, 1);
     assert.equal(result.stderr, `${script}: the token is wrong\n`);
@@ -218,6 +219,19 @@ test('a section of no direction is refused in a sentence', async () => {
   const result = await python('sweep.py', '--normal', '0,0,0', '--out', 'sweep');
   assert.equal(result.status, 1);
   assert.match(result.stderr, /^sweep.py: 'sections.Sweep.normal' is \[0, 0, 0\]/);
+});
+
+test('gaps.py writes how wide the gap between two doors is, and takes its measure away again', async () => {
+  const { eye } = watcher.state.camera;
+  const table = (await succeeds(python('gaps.py', '--lines', '3', '--out', '-'))).trim().split('\n').map((row) => row.trim().split(','));
+  assert.deepEqual(table[0], ['line', 'first x', 'first y', 'first z', 'second x', 'second y', 'second z', 'width mm']);
+  assert.ok(table.length > 1, 'a line across the picture crosses the gap');
+  for (const row of table.slice(1)) assert.ok(row[7] > 2 && row[7] < 30, `a gap of ${row[7]} mm`);
+  await watcher.until(() => Object.keys(watcher.state.measures).length === 0);
+  assert.deepEqual(watcher.state.camera.eye, eye);
+  const nothing = await python('gaps.py', '--lines', '2', '--first', 'Nowhere');
+  assert.equal(nothing.status, 1);
+  assert.equal(nothing.stderr, "gaps.py: 'Doors/Rear left' does not follow 'Nowhere' on any line of this view\n");
 });
 
 test('example_host prints the camera that others set, and ends at SIGINT', async () => {

@@ -354,7 +354,8 @@ LoadedScene with_changes(LoadedScene scene, std::string changes) {
     return scene;
 }
 
-const char* const kGiveBack = R"({"type":"patch","patch":{"views":null,"markers":null,"nodes":null}})";
+const char* const kGiveBack =
+    R"({"type":"patch","patch":{"views":null,"markers":null,"measures":null,"unit":null,"nodes":null}})";
 
 }  // namespace
 
@@ -362,10 +363,13 @@ TEST_CASE("what is kept of a scene is laid over what its file says, and null giv
     Stage before("a");
     const json file = before.state();
     before.say("a", patch(R"({"views":{"front":{"eye":[0,0,9],"fov":20}},"markers":{"m":{"point":[1,2,3]}},
+        "unit":{"metres":0.5,"shown":"cm"},"measures":{"w":{"picks":[
+            {"node":2,"snap":"point","points":[[0,0,0]]},{"node":2,"snap":"point","points":[[0,3,4]]}]}},
         "nodes":{"2":{"active":false},"3":{"activeChild":1}}})"));
     const json changed = before.state();
     Stage after("a", with_changes(first_scene(), before.room.changes()));
-    for (const char* kept : {"views", "markers", "nodes"}) CHECK(after.state()[kept] == changed[kept]);
+    for (const char* kept : {"views", "markers", "measures", "measured", "unit", "nodes"})
+        CHECK(after.state()[kept] == changed[kept]);
     CHECK(after.state()["camera"] == file["camera"]);  // that of the scene's opening
     CHECK_FALSE(
         after.room.scene().nodes[static_cast<std::size_t>(after.room.scene().scene->find_node(2))].active);
@@ -373,7 +377,8 @@ TEST_CASE("what is kept of a scene is laid over what its file says, and null giv
 
     after.say("a", kGiveBack);
     CHECK(after.room.changes() == "{}");
-    for (const char* kept : {"views", "markers", "nodes"}) CHECK(after.state()[kept] == file[kept]);
+    for (const char* kept : {"views", "markers", "measures", "measured", "unit", "nodes"})
+        CHECK(after.state()[kept] == file[kept]);
 }
 
 TEST_CASE("a home that was kept is the view with which the scene opens") {
@@ -408,8 +413,11 @@ TEST_CASE("a camera at a node that was moved stands where it was moved to") {
 TEST_CASE("what is kept and cannot be used: nothing of it counts, and a notice says so") {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"markers":{"m":{"point":[1,2,3]}},"nodes":{"99":{"active":false}}})", "99"},
-        {R"({"camera":{"fov":20}})", "views, markers and nodes"},
+        {R"({"camera":{"fov":20}})", "views, markers, measures, unit and nodes"},
         {R"({"views":{"v":{"fov":"wide"}}})", "fov"},
+        {R"({"measures":{"w":{"kind":"radius","picks":[
+            {"node":99,"snap":"center","points":[[0,0,0],[1,0,0],[0,1,0]]}]}}})",
+         "there is no node 99"},
     };
     for (const auto& [changes, culprit] : cases) {
         Stage stage("a", with_changes(first_scene(), changes));

@@ -183,6 +183,30 @@ TEST_CASE("double taps, drags and taps beside it open nothing") {
     CHECK_FALSE(stage.room.moves());
 }
 
+TEST_CASE("a measure of a door moves with it, and a replay measures the same") {
+    const auto measured = [](const Stage& stage) {
+        const auto& now = stage.room.state().measured->at("Width");
+        REQUIRE(now.components);
+        return *now.components;
+    };
+    const std::string patch =
+        R"({"type":"patch","patch":{"measures":{"Width":{"picks":[{"node":1,"snap":"point","points":[[0,0,0]]},
+            {"node":1,"snap":"point","points":[[1,0,0]]}]}}}})";
+    Stage stage("a", scene_with_a_door());
+    stage.say("a", patch.c_str());
+    CHECK(measured(stage) == glm::dvec3(1, 0, 0));
+    stage.say("a", kSwing);
+    stage.at(350ms);
+    CHECK(near_to(measured(stage), {std::sqrt(0.5), 0, -std::sqrt(0.5)}));
+    stage.at(700ms);
+    CHECK(near_to(measured(stage), {0, 0, -1}));
+    Stage again("a", scene_with_a_door());
+    again.say("a", patch.c_str());
+    again.say("a", kSwing);
+    again.at(700ms);
+    CHECK(again.state()["measured"] == stage.state()["measured"]);
+}
+
 TEST_CASE("another scene forgets it") {
     Stage stage("a", scene_with_a_door());
     stage.say("a", kTapSwings);
