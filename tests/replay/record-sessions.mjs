@@ -1,5 +1,6 @@
 // Records the sessions of tests/data/logs anew, by the real program over its WebSocket, with the scenes of
-// tests/data/scenes: NAME.jsonl is the log, NAME.camera.json the camera as the script saw it at the end.
+// tests/data/scenes: NAME.jsonl is the log, NAME.camera.json the camera as the script saw it at the end, and
+// NAME.measured.json what was measured then, if anything.
 //
 //   VRUT_PREVIEW=build/release/vrut-preview node tests/replay/record-sessions.mjs [NAME…]
 //
@@ -300,6 +301,44 @@ const SESSIONS = {
     return user;
   },
 
+  measures: async (session, name) => {
+    const user = await Participant.join(session, 'control', VIEW);
+    user.watch();
+    await user.record(name);
+    await user.ask({ type: 'patch', patch: { camera: { eye: [0, 1.6, 2.5], focus: [0.6, 0.9, -2.9] } } });
+    const snapped = async (x, y, to) => {
+      const { snapped } = await user.ask({ type: 'pick', x, y, frame: await user.seen(), snap: { within: 12, to } });
+      return snapped?.feature;
+    };
+    const found = { vertex: [], edge: [], plane: [], loop: [] };
+    for (const kind of Object.keys(found))
+      for (let x = 20; x < 400; x += 20) {
+        const feature = await snapped(x, 130, [kind]);
+        if (feature && !found[kind].some(({ node }) => node === feature.node)) found[kind].push(feature);
+      }
+    const of = (kind, wanted) => found[kind].find(({ node }) => node === wanted);
+    const [corner] = found.vertex;
+    const measures = {
+      'To the door': { kind: 'distance', picks: [corner, of('edge', 9)] },
+      'From an edge': { kind: 'parallel', picks: [of('edge', 2), { ...corner, snap: 'point' }] },
+      'Of the door': { kind: 'angle', picks: [of('plane', 2), of('plane', 9)] },
+      'Around a face': { kind: 'length', picks: [of('loop', 6)] },
+    };
+    for (const [key, measure] of Object.entries(measures)) {
+      await user.ask({ type: 'patch', patch: { measures: { [key]: measure } } });
+      await user.drag([200, 125], [190, 120], 4, 0, finger(4));
+    }
+    const before = user.state.measured['Of the door'].value;
+    for (const degrees of [-10, -25]) {
+      const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+      const matrix = [c, 0, s, 1.2, 0, 1, 0, 0, -s, 0, c, -2.9, 0, 0, 0, 1];
+      await user.ask({ type: 'patch', patch: { nodes: { 8: { matrix } } } });
+    }
+    assert.ok(Math.abs(user.state.measured['Of the door'].value - before - 25) < 1e-9, 'the door has turned by 25 degrees');
+    await user.ask({ type: 'patch', patch: { nodes: { 6: { active: false } } } });
+    return user;
+  },
+
   doors: async (session, name) => {
     const user = await Participant.join(session, 'control', VIEW);
     user.watch();
@@ -408,7 +447,7 @@ async function record(name, play) {
   try {
     const user = await play(session, name);
     await user.ask({ type: 'record', action: 'stop' });
-    const { camera } = user.state;
+    const { camera, measured } = user.state;
     for (const { client } of session.participants) await client.leave();
     const log = path.join(folder, `${name}.jsonl`);
     const replayed = spawnSync(PROGRAM, ['replay', log, '--scene', ROOM], { encoding: 'utf8' });
@@ -419,6 +458,8 @@ async function record(name, play) {
     mkdirSync(LOGS, { recursive: true });
     copyFileSync(log, path.join(LOGS, `${name}.jsonl`));
     writeFileSync(path.join(LOGS, `${name}.camera.json`), `${JSON.stringify(camera)}\n`);
+    if (Object.keys(measured).length > 0)
+      writeFileSync(path.join(LOGS, `${name}.measured.json`), `${JSON.stringify(measured)}\n`);
     console.log(`${name}: ${size} bytes`);
   } finally {
     await session.server.stop();

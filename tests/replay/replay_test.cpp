@@ -173,6 +173,12 @@ TEST_CASE("a session ends at the camera that its clients saw, each time to the l
     CHECK(camera.node.value_or(-1) == live.value("node", std::int64_t{-1}));
 }
 
+TEST_CASE("measures come to what the clients saw, to the last bit") {
+    std::ifstream file(session_file(".measured.json"));
+    if (!file) return;  // a session without measures
+    CHECK(protocol::document_of(played(read_session()).state())->at("measured") == json::parse(file));
+}
+
 TEST_CASE("merged moves and other frames lead to the same camera, to the last bit") {
     const EventLog log = read_session();
     const Bits expected = bits(played(log).state().camera);
