@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "math/bounds.hpp"
@@ -12,31 +12,27 @@ inline bool overlap(const math::Bounds& a, const math::Bounds& b) {
            a.min.z <= b.max.z && b.min.z <= a.max.z;
 }
 
-/// Boxes around items, 64 to a box in their order: neighbours in a file are mostly neighbours in space.
+/// Finds boxes that overlap with another, by the boxes around each 64 that lie side by side.
 class BlockBounds {
 public:
-    /// `add(item, bounds)` adds an item to a box.
-    template <typename Add>
-    void build(std::size_t count, const Add& add) {
-        count_ = count;
-        boxes_.assign((count + kBlock - 1) / kBlock, {});
-        for (std::size_t item = 0; item < count; ++item) add(item, boxes_[item / kBlock]);
-    }
-    /// Visits the items of all boxes that overlap with this one.
+    BlockBounds() = default;
+    explicit BlockBounds(std::span<const math::Bounds> boxes);
+
+    /// Visits all items whose boxes may overlap with this one, in no order.
     template <typename Visit>
     void visit(const math::Bounds& box, const Visit& visit_item) const {
-        for (std::size_t block = 0; block < boxes_.size(); ++block) {
-            if (!overlap(boxes_[block], box)) continue;
-            const std::size_t end = std::min(count_, (block + 1) * kBlock);
-            for (std::size_t item = block * kBlock; item < end; ++item) visit_item(item);
-        }
+        for (std::size_t block = 0; block < blocks_.size(); ++block)
+            if (overlap(blocks_[block], box))
+                for (const unsigned item : items_of(block)) visit_item(item);
     }
 
 private:
     static constexpr std::size_t kBlock = 64;
 
-    std::size_t count_ = 0;
-    std::vector<math::Bounds> boxes_;
+    std::span<const unsigned> items_of(std::size_t block) const;
+
+    std::vector<unsigned> order_;  // items by the cell of a grid, along a space-filling curve
+    std::vector<math::Bounds> blocks_;
 };
 
 }  // namespace vrut::measurement

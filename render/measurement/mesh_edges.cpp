@@ -24,15 +24,15 @@ bool is_fold(const WeldedMesh& mesh, unsigned half_edge) {
 
 MeshEdges::MeshEdges(const scene::Geometry& geometry) : mesh_(geometry) {
     find_feature_edges();
-    const std::vector<glm::dvec3>& positions = mesh_.positions();
-    triangle_blocks_.build(mesh_.triangles().size(), [&](std::size_t triangle, math::Bounds& box) {
-        for (int k = 0; k < 3; ++k) box.add(positions[mesh_.triangles()[triangle][k]]);
-    });
-    const std::size_t count = chain_vertices_.size();
-    chain_blocks_.build(count, [&](std::size_t at, math::Bounds& box) {
-        box.add(positions[chain_vertices_[at]]);
-        if (at + 1 < count) box.add(positions[chain_vertices_[at + 1]]);
-    });
+    std::vector<math::Bounds> boxes;
+    boxes.reserve(mesh_.triangles().size());
+    for (unsigned triangle = 0; triangle < mesh_.triangles().size(); ++triangle)
+        boxes.push_back(triangle_bounds(triangle));
+    triangle_blocks_ = BlockBounds(boxes);
+    boxes.clear();
+    boxes.reserve(chain_vertices_.size());
+    for (std::size_t at = 0; at < chain_vertices_.size(); ++at) boxes.push_back(chain_edge_bounds(at));
+    chain_blocks_ = BlockBounds(boxes);
 }
 
 void MeshEdges::find_feature_edges() {
@@ -51,27 +51,42 @@ void MeshEdges::find_feature_edges() {
     first_of_chain_ = std::move(chains.first);
 }
 
+math::Bounds MeshEdges::triangle_bounds(unsigned triangle) const {
+    math::Bounds bounds;
+    for (int k = 0; k < 3; ++k) bounds.add(mesh_.positions()[mesh_.triangles()[triangle][k]]);
+    return bounds;
+}
+
+math::Bounds MeshEdges::chain_edge_bounds(std::size_t at) const {
+    math::Bounds bounds;
+    for (const std::size_t end : {at, std::min(at + 1, chain_vertices_.size() - 1)})
+        bounds.add(mesh_.positions()[chain_vertices_[end]]);
+    return bounds;
+}
+
+std::size_t MeshEdges::chain_of(std::size_t at) const {
+    const auto next = std::upper_bound(first_of_chain_.begin(), first_of_chain_.end(), at);
+    return static_cast<std::size_t>(next - first_of_chain_.begin()) - 1;
+}
+
 std::vector<unsigned> MeshEdges::triangles_near(const math::Bounds& box) const {
     std::vector<unsigned> near;
-    triangle_blocks_.visit(box, [&](std::size_t triangle) {
-        math::Bounds bounds;
-        for (int k = 0; k < 3; ++k) bounds.add(mesh_.positions()[mesh_.triangles()[triangle][k]]);
-        if (overlap(bounds, box)) near.push_back(static_cast<unsigned>(triangle));
+    triangle_blocks_.visit(box, [&](unsigned triangle) {
+        if (overlap(triangle_bounds(triangle), box)) near.push_back(triangle);
     });
+    std::sort(near.begin(), near.end());
     return near;
 }
 
 std::vector<std::size_t> MeshEdges::chains_near(const math::Bounds& box) const {
     std::vector<std::size_t> near;
-    chain_blocks_.visit(box, [&](std::size_t at) {
-        const auto end = std::upper_bound(first_of_chain_.begin(), first_of_chain_.end(), at);
-        const auto chain = static_cast<std::size_t>(end - first_of_chain_.begin()) - 1;
-        if (at + 1 == *end || (!near.empty() && near.back() == chain)) return;
-        math::Bounds bounds;
-        bounds.add(mesh_.positions()[chain_vertices_[at]]);
-        bounds.add(mesh_.positions()[chain_vertices_[at + 1]]);
-        if (overlap(bounds, box)) near.push_back(chain);
+    chain_blocks_.visit(box, [&](unsigned at) {
+        if (!overlap(chain_edge_bounds(at), box)) return;
+        const std::size_t chain = chain_of(at);
+        if (at + 1 < first_of_chain_[chain + 1]) near.push_back(chain);
     });
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
     return near;
 }
 

@@ -10,11 +10,11 @@ namespace vrut::measurement {
 
 namespace {
 
-constexpr double kReach = 4;  // in radii of the cone
-/// What is in the way is looked for so far around the hit, in radii of the cone.
-constexpr double kOccluderReach = 8;
-/// What is nearer than this behind a surface lies on it, in radii of the cone.
-constexpr double kOnSurface = 1e-3;
+// In radii of the cone at the hit:
+constexpr double kReach = 4;
+constexpr double kWidth = 2;          // the hit may be at the cone's edge
+constexpr double kOccluderReach = 8;  // what is in the way is looked for from there on
+constexpr double kOnSurface = 1e-3;   // what is nearer than this behind a surface lies on it
 /// Rounding of the hit point, in its distance from the ray's origin.
 constexpr double kHitRounding = 1e-7;
 
@@ -75,19 +75,31 @@ std::optional<Neighborhood> Neighborhood::around(const scene::PlacedScene& place
     if (!is_finite(result.hit_) || !is_finite(result.eye_) || !(result.radius_ >= 0)) return {};
     if (!(std::abs(scene::relative_determinant(result.linear_)) > kHitRounding)) return {};
     result.edges_ = &memo.of(placed.scene, data->geometry);
-    const double rounding = kHitRounding * (result.depth(glm::dvec3(0)) + largest(hit.point) * 1e-6);
-    result.triangles_ = result.edges_->triangles_near(result.box_around(kReach * result.radius_ + rounding));
+    result.triangles_ = result.edges_->triangles_near(result.box_along_ray(kReach, kReach));
+    result.hit_triangle_ = result.nearest_triangle();
     result.find_occluders();
     return result;
 }
 
-math::Bounds Neighborhood::box_around(double reach) const {
+double Neighborhood::rounding() const {
+    return kHitRounding * (depth(glm::dvec3(0)) + largest(world_hit_) * 1e-6);
+}
+
+math::Bounds Neighborhood::box_around(const glm::dvec3& relative_point, double reach) const {
     glm::dvec3 half(0);
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 row(inverse_[0][k], inverse_[1][k], inverse_[2][k]);
         half[k] = reach * safe_length(row);
     }
-    return {hit_ - half, hit_ + half};
+    const glm::dvec3 center = hit_ + inverse_ * relative_point;
+    return {center - half, center + half};
+}
+
+math::Bounds Neighborhood::box_along_ray(double before, double behind) const {
+    const double reach = kWidth * radius_ + rounding();
+    math::Bounds box = box_around(direction_ * (-before * radius_), reach);
+    box.add(box_around(direction_ * (behind * radius_), reach));
+    return box;
 }
 
 Neighborhood::Corners Neighborhood::corners_of(unsigned triangle) const {
@@ -96,9 +108,8 @@ Neighborhood::Corners Neighborhood::corners_of(unsigned triangle) const {
 }
 
 void Neighborhood::find_occluders() {
-    const auto triangle = hit_triangle();
-    const bool hit_front = triangle && faces_ray(*triangle);
-    for (const unsigned near : edges_->triangles_near(box_around(kOccluderReach * radius_)))
+    const bool hit_front = hit_triangle_ && faces_ray(*hit_triangle_);
+    for (const unsigned near : edges_->triangles_near(box_along_ray(kOccluderReach, kReach)))
         if (!hit_front || faces_ray(near)) occluders_.push_back(corners_of(near));
 }
 
@@ -120,12 +131,12 @@ double Neighborhood::closest_to_ray(const glm::dvec3& a, const glm::dvec3& b) co
 }
 
 std::vector<std::size_t> Neighborhood::chains() const {
-    return edges_->chains_near(box_around(kReach * radius_));
+    return edges_->chains_near(box_along_ray(kReach, kReach));
 }
 
-std::optional<unsigned> Neighborhood::hit_triangle() const {
+std::optional<unsigned> Neighborhood::nearest_triangle() const {
     std::optional<unsigned> best;
-    double least = kHitRounding * (depth(glm::dvec3(0)) + largest(world_hit_) * 1e-6);
+    double least = rounding();
     for (const bool faces : {true, false})
         for (const unsigned triangle : triangles_) {
             if (faces_ray(triangle) != faces) continue;

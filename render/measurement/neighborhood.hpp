@@ -40,11 +40,11 @@ public:
     /// Where between two points, 0 to 1, a line is closest to the ray.
     double closest_to_ray(const glm::dvec3& a, const glm::dvec3& b) const;
 
-    /// Triangles and chains that may come within 4 radii.
+    /// Triangles in two cones' widths, and chains, that may come within 4 radii.
     const std::vector<unsigned>& triangles() const { return triangles_; }
     std::vector<std::size_t> chains() const;
     /// The triangle that was hit. None if it is a cap's.
-    std::optional<unsigned> hit_triangle() const;
+    const std::optional<unsigned>& hit_triangle() const { return hit_triangle_; }
     bool faces_ray(unsigned triangle) const;
     /// True if no front of the part is in the way.
     bool is_visible(const glm::dvec3& relative_point) const;
@@ -53,7 +53,12 @@ private:
     Neighborhood() = default;
     using Corners = std::array<glm::dvec3, 3>;
     Corners corners_of(unsigned triangle) const;
-    math::Bounds box_around(double reach) const;
+    math::Bounds box_around(const glm::dvec3& relative_point, double reach) const;
+    /// Around the hit and the ray, from `before` radii nearer to `behind` radii farther than the hit.
+    math::Bounds box_along_ray(double before, double behind) const;
+    /// How far the hit may be from its triangle.
+    double rounding() const;
+    std::optional<unsigned> nearest_triangle() const;
     bool is_clipped(const glm::dvec3& relative_point) const;
     void find_occluders();
 
@@ -65,6 +70,7 @@ private:
     double tangent_ = 0, radius_ = 0;
     bool is_mirrored_ = false;
     std::vector<unsigned> triangles_;
+    std::optional<unsigned> hit_triangle_;
     std::vector<Corners> occluders_;
 };
 

@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "measurement/position_table.hpp"
@@ -46,7 +47,9 @@ public:
 private:
     struct Entry {
         unsigned far_end, half_edge;
-        auto operator<=>(const Entry&) const = default;
+        bool operator<(const Entry& other) const {
+            return std::tie(far_end, half_edge) < std::tie(other.far_end, other.half_edge);
+        }
     };
 
     void weld(const scene::Geometry& geometry);
