@@ -87,3 +87,22 @@ TEST_CASE("a loop goes on through triangles that do not agree on the outside") {
     for (unsigned h = 0; h < edges.mesh().half_edge_count(); ++h)
         if (edges.is_feature(h)) CHECK(measurement::edge_loop(edges, h).size() == 32);
 }
+
+TEST_CASE("a smooth edge has no loop") {
+    const scene::Geometry solid = box({1, 2, 3});
+    const auto scene = scene_of({{1, solid, {}}});
+    const measurement::MeshEdges edges(solid);
+    measurement::MeshEdgesMemo memo;
+    int smooth = 0;
+    for (unsigned h = 0; h < edges.mesh().half_edge_count(); ++h) {
+        if (edges.is_feature(h)) continue;
+        ++smooth;
+        CHECK(measurement::edge_loop(edges, h).empty());
+        const glm::dvec3 start = edges.mesh().positions()[edges.mesh().start_of(h)];
+        const glm::dvec3 end = edges.mesh().positions()[edges.mesh().end_of(h)];
+        const std::vector<measurement::Feature> picks{{1, Snap::loop, {start, start, end}}};
+        const auto measured = measurement::measure(*scene, Kind::length, picks, memo);
+        CHECK(measured.problem == "its edge is not in the part any more");
+    }
+    CHECK(smooth == 12);
+}

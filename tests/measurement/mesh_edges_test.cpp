@@ -97,6 +97,14 @@ TEST_CASE("triangles without area do not matter") {
     const MeshEdges edges(with_bounds(whole));
     CHECK(edges.mesh().triangles().size() == 4);
     CHECK(feature_count(edges) == 4);
+    scene::Geometry at_outline;
+    at_outline.positions = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0, 0}};
+    at_outline.triangles = {{0, 4, 3}, {4, 2, 3}, {4, 1, 2}, {0, 1, 4}};
+    CHECK(feature_count(MeshEdges(with_bounds(at_outline))) == 4);
+    scene::Geometry at_fold = at_outline;
+    at_fold.positions.emplace_back(1, 0, -1);
+    at_fold.triangles.emplace_back(1, 0, 5);
+    CHECK(feature_count(MeshEdges(with_bounds(at_fold))) == 7);
     scene::Geometry solid = box({1, 1, 1});
     solid.triangles.insert(solid.triangles.begin(), {{0, 0, 1}, {2, 1, 2}, {3, 3, 3}});
     CHECK(feature_count(MeshEdges(solid)) == 12);

@@ -82,6 +82,7 @@ TEST_CASE("a plane is that of the largest of its triangles") {
         REQUIRE(found);
         const auto& p = found->feature.points;
         CHECK(near(glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0])), {0, 0, 1}, 1e-12));
+        CHECK(std::abs(p[0].z) < 1e-15);
     }
 }
 
@@ -102,6 +103,25 @@ TEST_CASE("a ray snaps to the center of a circle by its rim") {
         check_points(variant, part(prism(circle_outline(0.5, 24), 1, 0)), {0.01, 0, 0}, Snap::vertex,
                      {{0, 0, 0}});
     }
+}
+
+TEST_CASE("a circle is as far as its rim, and its facets do not count") {
+    const auto fine = snapped_at({}, part(plate(2, 1, 512)), {1.02, 0.1, 0}, {}, {0, 0, 5});
+    REQUIRE(fine);
+    CHECK(fine->feature.snap == Snap::center);
+    CHECK(std::abs(fine->offset - (std::hypot(1.02, 0.1) - 1) / 5) < 1e-4);
+    const glm::dvec2 facet = (on_circle(4, 0, 24) + on_circle(4, 1, 24)) * 0.499;
+    check_points({}, part(prism(circle_outline(4, 24), 1)), {facet, 0}, Snap::center, {{0, 0, 0}}, 1e-12);
+}
+
+TEST_CASE("pieces of a curve that is no circle have no midpoints") {
+    Outline ellipse = circle_outline(1, 64);
+    for (glm::dvec2& p : ellipse) p.x *= 2;
+    const glm::dvec2 middle = (ellipse[8] + ellipse[9]) * 0.499;
+    check_points({}, part(prism(ellipse, 1)), {middle, 0}, Snap::edge, {});
+    const auto asked = snapped_at({}, part(prism(ellipse, 1)), {middle, 0}, {Snap::midpoint});
+    REQUIRE(asked);
+    CHECK(near(asked->feature.points[0], {(ellipse[8] + ellipse[9]) * 0.5, 0}));
 }
 
 TEST_CASE("what is a circle in the world counts, not in the part") {
@@ -145,6 +165,22 @@ TEST_CASE("edges of several pieces are one") {
     REQUIRE(found->feature.snap == Snap::edge);
     CHECK(glm::distance(found->feature.points[1], found->feature.points[2]) == 4);
     check_points({}, part(plate()), {1.98, 0.01, 0}, Snap::midpoint, {{2, 0, 0}});
+}
+
+TEST_CASE("an outline without corners has whole edges, wherever the mesh begins") {
+    Outline outline;
+    const double step = 0.5 / (0.5 + std::sqrt(0.75));
+    for (unsigned side = 0; side < 4; ++side)
+        for (const glm::dvec2& p :
+             {glm::dvec2(2, 0), glm::dvec2(2, 1.5), glm::dvec2(2 - 0.5 * step, 1.5 + std::sqrt(0.75) * step),
+              glm::dvec2(1.5, 2)}) {
+            const glm::dvec2 turned = side % 2 ? glm::dvec2(-p.y, p.x) : p;
+            outline.push_back(side < 2 ? turned : -turned);
+        }
+    const auto found = snapped_at({}, part(prism(outline, 1)), {1.98, 0.5, 0});
+    REQUIRE(found);
+    REQUIRE(found->feature.snap == Snap::edge);
+    CHECK(glm::distance(found->feature.points[1], found->feature.points[2]) == 3);
 }
 
 TEST_CASE("vertices count where a mesh is coarse, and points where it is fine") {
@@ -205,6 +241,46 @@ TEST_CASE("the far side of a thin part is not found") {
         }
 }
 
+TEST_CASE("what is far behind the hit is not found") {
+    scene::Geometry wall;
+    wall.positions = {{-1, -1, 0}, {0, -1, 0}, {0, 1.3, 0}, {-1, 1.3, 0}, {0.02, 0, -1}};
+    wall.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}};
+    const auto found = snapped_at({}, part(with_bounds(wall)), {-0.01, 0, 0}, {}, {0, 0, 5});
+    REQUIRE(found);
+    CHECK(found->feature.snap == Snap::edge);
+    CHECK(found->feature.points[0].x == 0);
+}
+
+TEST_CASE("faces that are culled hide nothing, and faces that are seen from behind do") {
+    const scene::Geometry inside_out = turned_inside_out(box({1, 1, 0.05}));
+    scene::Material two_sided;
+    two_sided.two_sided = true;
+    for (const Variant& variant : variants()) {
+        CAPTURE(variant.name);
+        for (const bool culled : {true, false}) {
+            const std::vector<Part> parts{{7, inside_out, culled ? scene::Material() : two_sided}};
+            const auto found = snapped_at(variant, parts, {0.98, 0.98, 0}, {Snap::vertex}, {0, 0, 5});
+            REQUIRE(found);
+            CHECK(found->feature.points[0] == glm::dvec3(1, 1, culled ? -0.05 : 0.05));
+            const auto edge = snapped_at(variant, parts, {0.96, 0.5, 0}, {Snap::edge}, {-3, 0, 5});
+            if (culled || edge) CHECK(edge->feature.points[0].z == (culled ? -0.05 : 0.05));
+        }
+    }
+}
+
+TEST_CASE("what a clip plane cuts off hides nothing") {
+    const auto scene = scene_of(part(box({1, 1, 0.05})));
+    const std::vector<scene::ClipPlane> cut{{{0, 0, 1}, 0}};
+    const mesh::Ray ray{{0.98, 0.98, 5}, {0, 0, -1}};
+    const auto hit = mesh::pick(*scene, ray, {.clip_planes = cut});
+    REQUIRE(hit);
+    measurement::MeshEdgesMemo memo;
+    const auto found =
+        measurement::snap(*scene, *hit, ray, {.radius = kRadius, .to = {}, .clip_planes = cut}, memo);
+    REQUIRE(found);
+    CHECK(found->feature.points[0] == glm::dvec3(1, 1, -0.05));
+}
+
 TEST_CASE("nothing beyond a clip plane is found") {
     const auto scene = scene_of(part(box({1, 1, 1})));
     const mesh::Ray ray{{0.99, 0.5, 5}, {0, 0, -1}};
@@ -230,8 +306,10 @@ TEST_CASE("a hit on a cap, on no node, or on a flattened part") {
     const mesh::Hit root{0, {0.9, 0.5, 0.2}, {0, 0, 1}, 4.8};
     CHECK_FALSE(measurement::snap(*scene, root, ray, {.radius = kRadius, .to = {}}, memo));
     CHECK_FALSE(measurement::snap(*scene, cap, ray, {.radius = NAN, .to = {}}, memo));
-    CHECK_FALSE(measurement::snap(*scene_of(part(box({1, 1, 1}), scaled_by({1, 1, 0}))), cap, ray,
-                                  {.radius = kRadius, .to = {}}, memo));
+    const glm::dmat4 turned = turned_by(40, glm::normalize(glm::dvec3(1, 2, 3)));
+    for (const glm::dmat4& flat : {scaled_by({1, 1, 0}), turned * scaled_by({1, 1, 0}) * turned})
+        CHECK_FALSE(measurement::snap(*scene_of(part(box({1, 1, 1}), flat)), cap, ray,
+                                      {.radius = kRadius, .to = {}}, memo));
 }
 
 TEST_CASE("what is found is near the ray and on the part") {
