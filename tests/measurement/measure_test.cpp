@@ -94,9 +94,11 @@ TEST_CASE("parts that are far from the origin are as exact as near it") {
     const Measured tenth = measured(*exact, Kind::distance, {point(1, {0.1, 0, 0}), point(2, {0.2, 0, 0})});
     REQUIRE(tenth.value);
     CHECK(*tenth.value == 0.1);
-    const auto turned = scene_under(turned_by(77, glm::normalize(glm::dvec3(1, 2, -3))), parts);
-    check_value(
-        measured(*turned, Kind::length, {edge(1, far + glm::dvec3(1, 2, 2), far - glm::dvec3(1, 2, 2))}), 6);
+    const glm::dvec3 farther = far * 1e3;
+    const auto turned = scene_under(turned_by(77, glm::normalize(glm::dvec3(1, 2, -3))), doors());
+    check_value(measured(*turned, Kind::length,
+                         {edge(1, farther + glm::dvec3(1, 2, 2), farther - glm::dvec3(1, 2, 2))}),
+                6);
 }
 
 TEST_CASE("a measure moves with its parts") {

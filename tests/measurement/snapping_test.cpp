@@ -177,7 +177,13 @@ TEST_CASE("an outline without corners has whole edges, wherever the mesh begins"
             const glm::dvec2 turned = side % 2 ? glm::dvec2(-p.y, p.x) : p;
             outline.push_back(side < 2 ? turned : -turned);
         }
-    const auto found = snapped_at({}, part(prism(outline, 1)), {1.98, 0.5, 0});
+    scene::Geometry sheet;
+    sheet.positions.assign(1, glm::dvec3(0));
+    for (unsigned i = 0; i < outline.size(); ++i) {
+        sheet.positions.emplace_back(outline[i], 0);
+        sheet.triangles.emplace_back(0, 1 + i, 1 + (i + 1) % outline.size());
+    }
+    const auto found = snapped_at({}, part(with_bounds(sheet)), {1.98, 0.5, 0});
     REQUIRE(found);
     REQUIRE(found->feature.snap == Snap::edge);
     CHECK(glm::distance(found->feature.points[1], found->feature.points[2]) == 3);
@@ -296,20 +302,21 @@ TEST_CASE("nothing beyond a clip plane is found") {
 
 TEST_CASE("a hit on a cap, on no node, or on a flattened part") {
     const auto scene = scene_of(part(box({1, 1, 1})));
-    const mesh::Ray ray{{0.9, 0.5, 5}, {0, 0, -1}};
+    const mesh::Ray ray{{0.95, 0.5, 5}, {0, 0, -1}};
     measurement::MeshEdgesMemo memo;
-    const mesh::Hit cap{scene->scene->find_node(7), {0.9, 0.5, 0.2}, {0, 0, 1}, 4.8};
+    const mesh::Hit cap{scene->scene->find_node(7), {0.95, 0.5, 0.2}, {0, 0, 1}, 4.8};
     const auto found = measurement::snap(*scene, cap, ray, {.radius = kRadius, .to = {}}, memo);
     REQUIRE(found);
-    CHECK(found->feature == measurement::Feature{7, Snap::point, {{0.9, 0.5, 0.2}}});
+    CHECK(found->feature == measurement::Feature{7, Snap::point, {{0.95, 0.5, 0.2}}});
     CHECK_FALSE(measurement::snap(*scene, mesh::Hit(), ray, {.radius = kRadius, .to = {}}, memo));
     const mesh::Hit root{0, {0.9, 0.5, 0.2}, {0, 0, 1}, 4.8};
     CHECK_FALSE(measurement::snap(*scene, root, ray, {.radius = kRadius, .to = {}}, memo));
     CHECK_FALSE(measurement::snap(*scene, cap, ray, {.radius = NAN, .to = {}}, memo));
-    const glm::dmat4 turned = turned_by(40, glm::normalize(glm::dvec3(1, 2, 3)));
-    for (const glm::dmat4& flat : {scaled_by({1, 1, 0}), turned * scaled_by({1, 1, 0}) * turned})
-        CHECK_FALSE(measurement::snap(*scene_of(part(box({1, 1, 1}), flat)), cap, ray,
-                                      {.radius = kRadius, .to = {}}, memo));
+    for (int i = 0; i < 8; ++i) {
+        const glm::dmat4 turned = turned_by(10 * i, glm::normalize(glm::dvec3(1, 2, 3)));
+        const auto flat = scene_of(part(box({1, 1, 1}), turned * scaled_by({1, 1, 0}) * turned));
+        CHECK_FALSE(measurement::snap(*flat, cap, ray, {.radius = kRadius, .to = {}}, memo));
+    }
 }
 
 TEST_CASE("what is found is near the ray and on the part") {
