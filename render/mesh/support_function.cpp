@@ -63,10 +63,50 @@ double most_of(const scene::Geometry& geometry, const Bvh<float>* tree, const Sl
     return most;
 }
 
+/// What a plane leaves of a polygon (Sutherland and Hodgman, "Reentrant Polygon Clipping", 1974).
+std::vector<glm::dvec3> clipped(const std::vector<glm::dvec3>& polygon, const glm::dvec4& equation) {
+    std::vector<glm::dvec3> kept;
+    kept.reserve(polygon.size() + 1);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double above_a = glm::dot(equation, glm::dvec4(a, 1));
+        const double above_b = glm::dot(equation, glm::dvec4(b, 1));
+        if (above_a >= 0) kept.push_back(a);
+        if ((above_a < 0) != (above_b < 0)) kept.push_back(a + (b - a) * (above_a / (above_a - above_b)));
+    }
+    return kept;
+}
+
+/// Adds the corners of what planes leave of a geometry's triangles.
+void add_kept(const scene::Geometry& geometry, const glm::dmat4& world, std::span<const glm::dvec4> equations,
+              std::vector<glm::dvec3>& points) {
+    const auto add = [&](const glm::dvec3& p) { points.emplace_back(world * glm::dvec4(p, 1)); };
+    const auto is_kept = [&](const glm::dvec3& p) {
+        return std::ranges::all_of(
+            equations, [&](const glm::dvec4& equation) { return glm::dot(equation, glm::dvec4(p, 1)) >= 0; });
+    };
+    std::vector<bool> kept(geometry.positions.size());
+    for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = is_kept(geometry.positions[i]);
+    std::vector<bool> is_added(kept.size());
+    for (const glm::uvec3& triangle : geometry.triangles) {
+        std::vector<glm::dvec3> polygon;
+        for (int k = 0; k < 3; ++k) {
+            polygon.push_back(geometry.positions[triangle[k]]);
+            if (!kept[triangle[k]] || is_added[triangle[k]]) continue;
+            is_added[triangle[k]] = true;
+            add(polygon.back());
+        }
+        if (kept[triangle.x] && kept[triangle.y] && kept[triangle.z]) continue;
+        for (const glm::dvec4& equation : equations) polygon = clipped(polygon, equation);
+        for (const glm::dvec3& p : polygon) add(p);
+    }
+}
+
 }  // namespace
 
 SupportFunction::SupportFunction(const scene::PlacedScene& placed, scene::Index node,
-                                 const PickingTrees* trees) {
+                                 const PickingTrees* trees, std::span<const scene::ClipPlane> clip_planes) {
+    bool has_parts = false;
     const std::vector<bool> shown = scene::shown_nodes(placed, std::nullopt);
     const std::vector<bool> below = scene::subtree(*placed.scene, node);
     std::vector<Part> presentation;
@@ -81,11 +121,31 @@ SupportFunction::SupportFunction(const scene::PlacedScene& placed, scene::Index 
         const math::Bounds box = math::transformed(placed.world[i], geometry.bounds);
         if (!(glm::length(box.min) < kFarthest && glm::length(box.max) < kFarthest)) continue;
         const bool presents = placed.scene->is_presentation(static_cast<scene::Index>(i));
-        (presents ? around_presentation : bounds_).add(box);
-        (presents ? presentation : parts_)
-            .push_back({&geometry, trees ? trees->of(data->geometry) : nullptr, placed.world[i]});
+        const Part part{&geometry, trees ? trees->of(data->geometry) : nullptr, placed.world[i]};
+        if (presents) {
+            around_presentation.add(box);
+            presentation.push_back(part);
+            continue;
+        }
+        has_parts = true;
+        std::vector<glm::dvec4> crossing;
+        scene::Side side = scene::Side::shown;
+        for (const scene::ClipPlane& plane : clip_planes) {
+            const glm::dvec4 equation = scene::clip_equation(plane, placed.world[i]);
+            const scene::Side of_plane = scene::side_of(geometry.bounds, equation);
+            if (of_plane == scene::Side::crossed) crossing.push_back(equation);
+            if (of_plane == scene::Side::hidden) side = of_plane;
+        }
+        if (side == scene::Side::hidden) continue;
+        if (!crossing.empty()) {
+            add_kept(geometry, placed.world[i], crossing, cut_points_);
+            continue;
+        }
+        bounds_.add(box);
+        parts_.push_back(part);
     }
-    if (!parts_.empty()) return;
+    for (const glm::dvec3& point : cut_points_) bounds_.add(point);
+    if (has_parts) return;
     parts_ = std::move(presentation);
     bounds_ = around_presentation;
 }
@@ -97,6 +157,7 @@ double SupportFunction::operator()(const glm::dvec3& direction) const {
         if (slope.most(part.geometry->bounds.half_extent()) > most)
             most = most_of(*part.geometry, part.tree, slope, most);
     }
+    for (const glm::dvec3& point : cut_points_) most = std::max(most, glm::dot(direction, point));
     return most;
 }
 

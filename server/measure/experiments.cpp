@@ -60,6 +60,7 @@ std::vector<Experiment> experiments_of(const Subject& subject, int frames) {
     if (!subject.home.scene->scene->textures().empty())
         add("texture-filter", realistic, texture_filters(), Judge::finer_pixels, frames);
     add("jpeg", realistic, encodings(), Judge::same_samples, frames);
+    add("sections", realistic, clip_plane_counts(), Judge::none, frames);
     return list;
 }
 

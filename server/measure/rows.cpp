@@ -13,12 +13,13 @@ namespace {
 using Transparency = plan::Methods::Transparency;
 
 constexpr std::array kColumns{
-    "chart",        "scene",          "sha256",       "renderer",    "machine", "version",    "mode",
-    "width",        "height",         "frames",       "scale",       "samples", "detail",     "light",
-    "transparency", "texture_filter", "jpeg_quality", "subsampling", "method",  // what is measured ends here
-    "triangles",    "ms_mean",        "ms_median",    "ms_p5",       "ms_p95",  "bytes_mean", "bytes_median",
-    "bytes_p5",     "bytes_p95",      "flip_mean",    "flip_median", "flip_p5", "flip_p95",   "maximum",
-    "wrong"};
+    "chart",          "scene",        "sha256",      "renderer",    "machine",
+    "version",        "mode",         "width",       "height",      "frames",
+    "scale",          "samples",      "detail",      "light",       "transparency",
+    "texture_filter", "jpeg_quality", "subsampling", "clip_planes", "method",  // what is measured ends here
+    "triangles",      "ms_mean",      "ms_median",   "ms_p5",       "ms_p95",
+    "bytes_mean",     "bytes_median", "bytes_p5",    "bytes_p95",   "flip_mean",
+    "flip_median",    "flip_p5",      "flip_p95",    "maximum",     "wrong"};
 
 std::string text_of(double value) {
     char text[32];
@@ -72,6 +73,7 @@ std::vector<std::string> key_fields(const Row& row) {
             anisotropic ? "anisotropic" : "trilinear",
             std::to_string(setting.jpeg_quality),
             setting.subsampled ? "4:2:0" : "4:4:4",
+            std::to_string(setting.clip_planes),
             row.method};
 }
 
@@ -198,8 +200,10 @@ std::optional<Row> row_of(std::string_view line) {
     numbers.skip(3);
     row.setting.jpeg_quality = numbers.take<int>();
     row.setting.subsampled = (*fields)[17] == "4:2:0";
-    row.method = (*fields)[18];
-    numbers.skip(2);
+    numbers.skip();
+    row.setting.clip_planes = numbers.take<int>();
+    row.method = (*fields)[19];
+    numbers.skip();
     row.cost.triangles = numbers.take();
     row.cost.ms = numbers.take_spread();
     row.cost.bytes = numbers.take_spread();

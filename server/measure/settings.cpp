@@ -30,6 +30,21 @@ std::string number(double value) {
     return text;
 }
 
+constexpr std::array kClipPlaneCounts{0, 1, 6};
+
+/// One looks into the scene from its right; a box of six leaves 0.6 of it in each direction.
+std::vector<scene::ClipPlane> clip_planes_of(const math::Bounds& bounds, int count) {
+    std::vector<scene::ClipPlane> planes;
+    planes.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+        glm::dvec3 normal(0);
+        normal[i / 2] = i % 2 == 0 ? 1 : -1;
+        const double out = count > 1 ? 0.6 * bounds.half_extent()[i / 2] : 0;
+        planes.push_back({normal, glm::dot(normal, bounds.center()) + out});
+    }
+    return planes;
+}
+
 Setting not_encoded() {
     Setting setting;
     setting.jpeg_quality = 0;
@@ -51,6 +66,7 @@ std::string name_of(const Setting& setting) {
     if (setting.methods.transparency == Transparency::per_pixel_lists)
         name += ", all glass in per-pixel lists";
     if (setting.methods.texture_filter == TextureFilter::anisotropic) name += ", textures anisotropic";
+    if (setting.clip_planes > 0) name += ", clip planes " + std::to_string(setting.clip_planes);
     if (setting.jpeg_quality > 0)
         name += ", JPEG " + std::to_string(setting.jpeg_quality) + (setting.subsampled ? " 4:2:0" : " 4:4:4");
     return name;
@@ -69,9 +85,13 @@ protocol::Quality quality_of(const Setting& setting) {
 }
 
 Setting setting_of(const protocol::Quality& quality) {
-    return {quality.scale,        quality.samples,
-            quality.detail,       {},
-            quality.jpeg_quality, quality.subsampling == protocol::Quality::Subsampling::yuv420};
+    Setting setting;
+    setting.scale = quality.scale;
+    setting.samples = quality.samples;
+    setting.detail = quality.detail;
+    setting.jpeg_quality = quality.jpeg_quality;
+    setting.subsampled = quality.subsampling == protocol::Quality::Subsampling::yuv420;
+    return setting;
 }
 
 plan::View view_with(plan::View view, const Setting& setting) {
@@ -83,6 +103,7 @@ plan::View view_with(plan::View view, const Setting& setting) {
     view.samples = setting.samples;
     view.detail = setting.detail;
     view.methods = setting.methods;
+    if (setting.clip_planes > 0) view.clip_planes = clip_planes_of(view.scene->bounds, setting.clip_planes);
     return view;
 }
 
@@ -109,9 +130,9 @@ std::vector<Setting> product(bool with_detail) {
                 for (const Encoding& encoding : kEncodings)
                     if ((detail == 0 || with_detail) && (samples == 1 || scale >= 0.5))
                         settings.push_back(
-                            {scale, samples, detail, {}, encoding.quality, encoding.subsampled});
+                            {scale, samples, detail, {}, 0, encoding.quality, encoding.subsampled});
     for (const int samples : {2, 8, 16})
-        settings.push_back({1, samples, 0, {}, samples == 16 ? 90 : 85, false});
+        settings.push_back({1, samples, 0, {}, 0, samples == 16 ? 90 : 85, false});
     for (const Setting& setting : encodings()) add(settings, setting);
     Setting vertex, sorted;
     vertex.methods.light = plan::Methods::Lighting::vertex;
@@ -128,7 +149,7 @@ std::vector<Setting> candidates(bool with_detail) {
             for (const Encoding& encoding : kEncodings)
                 if ((detail == 0 || with_detail) && (encoding.quality != 90 || scale == 1) &&
                     (encoding.quality != 75 || scale >= 0.5))
-                    settings.push_back({scale, 1, detail, {}, encoding.quality, encoding.subsampled});
+                    settings.push_back({scale, 1, detail, {}, 0, encoding.quality, encoding.subsampled});
     return settings;
 }
 
@@ -174,11 +195,17 @@ std::vector<Setting> texture_filters() {
     return settings;
 }
 
+std::vector<Setting> clip_plane_counts() {
+    std::vector<Setting> settings(kClipPlaneCounts.size(), not_encoded());
+    for (std::size_t i = 0; i < settings.size(); ++i) settings[i].clip_planes = kClipPlaneCounts[i];
+    return settings;
+}
+
 std::vector<Setting> encodings() {
     std::vector<Setting> settings;
     for (const bool subsampled : {true, false})
         for (const int quality : {30, 45, 60, 75, 85, 90, 95, 100})
-            settings.push_back({1, 1, 0, {}, quality, subsampled});
+            settings.push_back({1, 1, 0, {}, 0, quality, subsampled});
     return settings;
 }
 

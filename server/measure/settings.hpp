@@ -15,6 +15,7 @@ struct Setting {
     int samples = 1;    ///< in a pixel
     double detail = 0;  ///< View::detail: pixels of error allowed in the meshes
     plan::Methods methods = {};
+    int clip_planes = 0;      ///< with caps: 0, one through the middle of the scene, or the six of a box
     int jpeg_quality = 85;    ///< 0: the picture is not encoded
     bool subsampled = false;  ///< 4:2:0, else 4:4:4
 
@@ -49,6 +50,8 @@ std::vector<Setting> sample_counts();
 std::vector<Setting> lights();
 std::vector<Setting> transparencies();
 std::vector<Setting> texture_filters();
+/// None, one and six clip planes.
+std::vector<Setting> clip_plane_counts();
 /// The ordinary picture in each JPEG quality and subsampling.
 std::vector<Setting> encodings();
 

@@ -50,6 +50,20 @@ Section growth_section(const std::vector<SceneRows>& scenes, const std::vector<R
         pixels.series.back().color = static_cast<int>(pixels.series.size()) - 1;
     }
     section.plots.push_back(std::move(pixels));
+    Plot planes{"sections",
+                "time against clip planes with caps",
+                "clip planes: none, one through the middle, the six of a box",
+                "ms a frame: draw, read back (lower is better, log)",
+                {},
+                {}};
+    planes.linear_x = true;
+    for (const SceneRows& scene : scenes) {
+        planes.series.push_back(line_of(
+            rows_for(scene.rows, "sections"),
+            [](const Row& row) { return static_cast<double>(row.setting.clip_planes); }, scene.name));
+        planes.series.back().color = static_cast<int>(planes.series.size()) - 1;
+    }
+    section.plots.push_back(std::move(planes));
     section.sentences = {
         "Medians, with whiskers from the 5th to the 95th percentile of the frames of one orbit. The scenes "
         "of so many triangles are rings made for it, all in view."};

@@ -90,8 +90,9 @@ void Room::apply(const Received& received, const protocol::Key& key) {
 void Room::fit_selection() {
     const mesh::PickingTrees* trees = loaded_.picking_trees.get();
     const scene::Index node = selected();
-    navigation::FitTarget target = fit_target(*scene_, node == scene::kNone ? 0 : node, trees);
-    if (target.box.empty()) target = fit_target(*scene_, 0, trees);
+    const auto& planes = visible_.clip_planes;
+    navigation::FitTarget target = fit_target(*scene_, node == scene::kNone ? 0 : node, trees, planes);
+    if (target.box.empty()) target = fit_target(*scene_, 0, trees, planes);
     move_camera(navigation::fitted(camera(), target, aspect(), cover()));
 }
 

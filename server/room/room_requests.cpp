@@ -36,7 +36,8 @@ void Room::apply(const Received& received, const protocol::Fit& fit) {
     const scene::Index node = fit.node ? scene_->scene->find_node(*fit.node) : 0;
     const std::string name = "node " + std::to_string(fit.node.value_or(0));
     if (node == scene::kNone) return reject(received, code::unknown_node, "there is no " + name);
-    const navigation::FitTarget target = fit_target(*scene_, node, loaded_.picking_trees.get());
+    const navigation::FitTarget target =
+        fit_target(*scene_, node, loaded_.picking_trees.get(), visible_.clip_planes);
     if (fit.node && target.box.empty())
         return reject(received, code::failed, "nothing of " + name + " is to be seen");
     steer(received);

@@ -197,8 +197,10 @@ protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect, c
 }
 
 navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,
-                                 const mesh::PickingTrees* trees) {
-    const mesh::SupportFunction support(placed, node, trees);
+                                 const mesh::PickingTrees* trees,
+                                 std::span<const scene::ClipPlane> clip_planes) {
+    const mesh::SupportFunction support(placed, node, trees, clip_planes);
+    if (support.bounds().empty() && !clip_planes.empty()) return fit_target(placed, node, trees);
     return {support.bounds(), support};
 }
 

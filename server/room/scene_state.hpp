@@ -21,9 +21,10 @@ protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
 /// change the time that it takes; null: none.
 protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect, const navigation::Cover& cover,
                               const mesh::PickingTrees* trees);
-/// What is shown at and below a node, less what presents it.
+/// What is shown at and below a node, less what presents it, and what planes cut away unless that is all.
 navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,
-                                 const mesh::PickingTrees* trees);
+                                 const mesh::PickingTrees* trees,
+                                 std::span<const scene::ClipPlane> clip_planes = {});
 
 scene::Camera camera_of(const protocol::CameraState& state);
 scene::Camera camera_of(const protocol::ViewState& view);

@@ -85,7 +85,7 @@ test('charts of a scene, and nothing is measured twice', () => {
   assert.match(first.stderr, /\d+ % glass-crossing, stylized/);
   const rows = measurements();
   assert.match(rows[0], /^chart,scene,sha256,renderer,.*,ms_median,.*,bytes_p95,flip_mean,.*,maximum,wrong$/);
-  for (const chart of ['modes', 'table-7-1', 'antialiasing', 'lighting', 'transparency', 'jpeg', 'pixels', 'picking', 'triangles'])
+  for (const chart of ['modes', 'table-7-1', 'antialiasing', 'lighting', 'transparency', 'jpeg', 'sections', 'pixels', 'picking', 'triangles'])
     assert.ok(rows.some((row) => row.startsWith(`${chart},`)), chart);
   // Its panes have no coarser surfaces.
   assert.ok(!rows.some((row) => row.startsWith('detail,')));

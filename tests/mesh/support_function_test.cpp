@@ -90,3 +90,44 @@ TEST_CASE("support: hidden parts and presentation do not count, unless nothing e
     CHECK(of(3)({1, 0, 0}) == -kInfinity);
     CHECK(of(3).bounds().empty());
 }
+
+TEST_CASE("support: what planes leave, with the points where they cut") {
+    scene::SceneParts parts;
+    parts.geometries = {box({1, 1, 1})};
+    parts.nodes = {group(1, false), cube(2, 1, 0), cube(3, 1, 5), group(4, true), cube(5, 4, -30)};
+    auto built = scene::Scene::build(std::move(parts));
+    REQUIRE(built);
+    const scene::PlacedScene placed = scene::place(*std::move(built));
+    const auto of = [&](std::vector<scene::ClipPlane> planes) {
+        return mesh::SupportFunction(placed, 0, nullptr, planes);
+    };
+    const glm::dvec3 diagonal = glm::normalize(glm::dvec3(1, 1, 0));
+    const mesh::SupportFunction one = of({{{1, 0, 0}, 0.25}});
+    CHECK(one({1, 0, 0}) == doctest::Approx(0.25));
+    CHECK(one({-1, 0, 0}) == 1);
+    CHECK(one(diagonal) == doctest::Approx(1.25 / std::sqrt(2)));
+    CHECK(one.bounds().max == glm::dvec3(0.25, 1, 1));
+    const mesh::SupportFunction two = of({{{1, 0, 0}, 0.25}, {diagonal, 0.5}});
+    CHECK(two(diagonal) == doctest::Approx(0.5));
+    CHECK(two({0, 1, 0}) == 1);
+    CHECK(two({1, 0, 0}) == doctest::Approx(0.25));
+    CHECK(of({{{1, 0, 0}, 7}})({1, 0, 0}) == 6);
+    CHECK(of({{{1, 0, 0}, -2}}).bounds().empty());
+    CHECK(of({{{1, 0, 0}, -2}})({1, 0, 0}) == -kInfinity);
+}
+
+TEST_CASE("support: nothing beyond the planes, and no less than the corners that they leave") {
+    Dice dice(5);
+    const auto placed = scene_of(random_parts(dice, {}));
+    for (int round = 0; round < 50; ++round) {
+        const glm::dvec3 normal = glm::normalize(dice.vector(1)), direction = dice.vector(1);
+        const mesh::SupportFunction whole(*placed, 0, nullptr);
+        const double low = -whole(-normal), distance = low + 0.3 * (whole(normal) - low);
+        const std::vector<scene::ClipPlane> planes{{normal, distance}};
+        const mesh::SupportFunction cut(*placed, 0, nullptr, planes);
+        const double size = whole(normal) - low;
+        CHECK(cut(normal) == doctest::Approx(distance).epsilon(0).scale(1).epsilon(1e-9 * size));
+        CHECK(cut(-normal) == doctest::Approx(whole(-normal)).epsilon(1e-12));
+        CHECK(cut(direction) <= whole(direction) + 1e-9 * size);
+    }
+}

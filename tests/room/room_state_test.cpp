@@ -359,6 +359,22 @@ const char* const kGiveBack =
 
 }  // namespace
 
+TEST_CASE("fit shows what sections leave, and all where they leave nothing") {
+    const auto distance_after = [](const char* sections) {
+        Stage stage("a", other_scene());
+        stage.say("a", patch(sections));
+        stage.say("a", R"({"type":"patch","patch":{"camera":{"eye":[0,0,5],"focus":[0,0,0]}}})");
+        stage.say("a", R"({"type":"fit"})");
+        return glm::distance(stage.camera().eye, glm::dvec3(stage.camera().center));
+    };
+    const double whole = distance_after("{}");
+    CHECK(distance_after(R"({"sections":{"cut":{"normal":[0,1,0],"distance":-0.25}}})") < 0.9 * whole);
+    CHECK(distance_after(R"({"sections":{"cut":{"normal":[0,1,0],"distance":-0.25,"on":false}}})") ==
+          doctest::Approx(whole));
+    CHECK(distance_after(R"({"sections":{"cut":{"normal":[0,1,0],"distance":-9}}})") ==
+          doctest::Approx(whole));
+}
+
 TEST_CASE("what is kept of a scene is laid over what its file says, and null gives that back") {
     Stage before("a");
     const json file = before.state();
