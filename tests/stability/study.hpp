@@ -108,6 +108,18 @@ Study sections_at_a_face(const Laboratory& laboratory);
 Study sections_through_many_walls(const Laboratory& laboratory);
 Study sections_of_slivers(const Laboratory& laboratory);
 Study sections_of_gaps(const Laboratory& laboratory);
+// measures.cpp
+Study corners_of_noisy_meshes(const Laboratory& laboratory);
+Study edges_of_noisy_meshes(const Laboratory& laboratory);
+Study circles_of_noisy_meshes(const Laboratory& laboratory);
+Study planes_of_noisy_meshes(const Laboratory& laboratory);
+Study mistakes_on_noisy_meshes(const Laboratory& laboratory);
+Study values_of_noisy_meshes(const Laboratory& laboratory);
+Study circles_of_few_edges(const Laboratory& laboratory);
+Study discs_of_few_edges(const Laboratory& laboratory);
+Study circles_of_short_arcs(const Laboratory& laboratory);
+Study planes_of_slivers(const Laboratory& laboratory);
+Study planes_of_rounded_slivers(const Laboratory& laboratory);
 // moves.cpp
 Study many_moves(const Laboratory& laboratory);
 Study over_the_pole(const Laboratory& laboratory);
