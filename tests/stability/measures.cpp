@@ -375,7 +375,10 @@ Study of_slivers(const Laboratory& laboratory, const std::string& file, const st
 Study corners_of_noisy_meshes(const Laboratory& laboratory) {
     Study study = noisy(laboratory, "noisy-corners", "Picking corners of noisy meshes", Aim::corner);
     study.method.title = "where folds of more than 20 degrees meet";
-    study.explanation = "The corner is a vertex of the mesh, with its noise.";
+    study.bound = 3;
+    study.explanation =
+        "A corner is a vertex of the mesh, with its noise. Where a pick is beside the part, all eight rays "
+        "around it may pass the corner by.";
     return study;
 }
 
