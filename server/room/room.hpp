@@ -270,6 +270,7 @@ private:
     const Frame* find_frame(std::int64_t number) const;
     /// What of the present scene lies under a point of a frame's view, in CSS pixels.
     std::optional<mesh::Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
+    std::optional<mesh::Hit> hit_along(const mesh::Ray& ray, bool through) const;
     /// Through that point of the frame's view, from its eye.
     mesh::Ray ray_at(const Frame& seen, double x, double y) const;
     void apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit);

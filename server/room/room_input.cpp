@@ -143,7 +143,11 @@ mesh::Ray Room::ray_at(const Frame& seen, double x, double y) const {
 }
 
 std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, bool through) const {
-    return mesh::pick(*scene_, ray_at(seen, x, y),
+    return hit_along(ray_at(seen, x, y), through);
+}
+
+std::optional<mesh::Hit> Room::hit_along(const mesh::Ray& ray, bool through) const {
+    return mesh::pick(*scene_, ray,
                       {.through_transparent = through,
                        .trees = loaded_.picking_trees.get(),
                        .mode = visible_.mode,

@@ -1,10 +1,8 @@
 // What picks snap to, and what measures come to as the parts stand.
-#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "measurement/measure.hpp"
-#include "measurement/snapping.hpp"
+#include "measurement/snap_around.hpp"
 #include "room/room.hpp"
 
 namespace vrut::server::room {
@@ -14,9 +12,6 @@ using protocol::Error;
 namespace code = protocol::error_code;
 
 namespace {
-
-/// Around a point of the view, so that a finger beside an edge finds it.
-constexpr int kRays = 8;
 
 // protocol's own words are in the same order.
 static_assert(static_cast<int>(Snap::plane) == static_cast<int>(protocol::Snap::plane));
@@ -46,42 +41,14 @@ std::vector<Snap> snaps_of(const std::vector<protocol::Snap>& snaps) {
     return result;
 }
 
-/// What is found beside the ray itself must be an edge or the like: of a surface there is nothing to see.
-std::vector<Snap> beside(std::vector<Snap> to) {
-    if (to.empty()) return {Snap::vertex, Snap::midpoint, Snap::center, Snap::edge};
-    std::erase_if(to, [](Snap snap) { return snap == Snap::point || snap == Snap::plane; });
-    return to;
-}
-
-/// The more special one counts, and of two alike the nearer one.
-bool is_better(const measurement::Snapped& a, const measurement::Snapped& b) {
-    constexpr std::array kRank{6, 0, 1, 2, 3, 4, 5};  // by Snap
-    const int rank_a = kRank[static_cast<std::size_t>(a.feature.snap)],
-              rank_b = kRank[static_cast<std::size_t>(b.feature.snap)];
-    return rank_a != rank_b ? rank_a < rank_b : a.offset < b.offset;
-}
-
 }  // namespace
 
 std::optional<protocol::Snapped> Room::snapped_at(const Frame& seen, const protocol::Pick& pick) const {
     const double pixel = 2 * std::tan(seen.camera.fov * scene::kRadiansPerDegree / 2) / seen.view_size.height;
-    const mesh::Ray ray = ray_at(seen, pick.x, pick.y);
-    std::optional<measurement::Snapped> best;
-    const auto look = [&](double x, double y, std::vector<Snap> to) {
-        const std::optional<mesh::Hit> hit = hit_at(seen, x, y, pick.through);
-        if (!hit) return;
-        const auto found =
-            measurement::snap(*scene_, *hit, ray,
-                              {pick.snap->within * pixel, std::move(to), visible_.clip_planes}, mesh_edges_);
-        if (found && (!best || is_better(*found, *best))) best = found;
-    };
-    const std::vector<Snap> to = snaps_of(pick.snap->to), around = beside(to);
-    look(pick.x, pick.y, to);
-    for (int i = 0; i < kRays && !around.empty(); ++i) {
-        const double angle = 2 * std::numbers::pi * i / kRays;
-        look(pick.x + pick.snap->within * std::cos(angle), pick.y + pick.snap->within * std::sin(angle),
-             around);
-    }
+    const auto best = measurement::snap_around(
+        *scene_, ray_at(seen, pick.x, pick.y),
+        [&](const mesh::Ray& ray) { return hit_along(ray, pick.through); },
+        {pick.snap->within * pixel, snaps_of(pick.snap->to), visible_.clip_planes}, mesh_edges_);
     if (!best) return {};
     const auto& feature = best->feature;
     return protocol::Snapped{

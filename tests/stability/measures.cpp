@@ -298,8 +298,7 @@ RadiusErrors radius_errors(const Outline& outline, unsigned count, bool is_solid
         const unsigned i = count / 2;
         const glm::dvec3 at = glm::mix(vertex(i), vertex(i + 1), 0.3), from = at + placed_at({0.3, 0.2, 5});
         measurement::MeshEdgesMemo memo;
-        const auto found =
-            snapped_in_cone(*scene, {from, glm::normalize(at - from)}, {.radius = kCone}, memo);
+        const auto found = clicked(*scene, at, from, memo);
         const bool is_circle = found && found->feature.snap == Snap::center;
         const auto& points = found ? found->feature.points : Points{};
         worst.snapped =

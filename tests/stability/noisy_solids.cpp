@@ -10,8 +10,6 @@ namespace vrut::stability {
 
 namespace {
 
-using measurement::Snap;
-
 constexpr unsigned kPlateEdges = 32, kCylinderEdges = 128, kCylinderRows = 10;
 
 Points closed_circle(unsigned count) {
@@ -19,16 +17,6 @@ Points closed_circle(unsigned count) {
     points.reserve(count + 1);
     for (unsigned i = 0; i <= count; ++i) points.emplace_back(on_circle(1, i, count), 0);
     return points;
-}
-
-bool is_of_surface(Snap snap) { return snap == Snap::point || snap == Snap::plane; }
-
-/// As the server judges what is found by several rays.
-bool is_better(const measurement::Snapped& a, const measurement::Snapped& b) {
-    constexpr std::array kRank{6, 0, 1, 2, 3, 4, 5};  // by Snap
-    const int rank_a = kRank[static_cast<std::size_t>(a.feature.snap)];
-    const int rank_b = kRank[static_cast<std::size_t>(b.feature.snap)];
-    return rank_a != rank_b ? rank_a < rank_b : a.offset < b.offset;
 }
 
 double chord(unsigned count) { return 2 * std::sin(std::numbers::pi / count); }
@@ -138,27 +126,14 @@ Points NoisySolid::moved(const Points& positions) const {
 }
 
 std::optional<measurement::Snapped> NoisySolid::snapped(const glm::dvec3& at, const glm::dvec3& eye) {
-    return snapped_in_cone(*placed_, {eye, glm::normalize(at - eye)}, {.radius = kCone}, memo_);
+    return clicked(*placed_, at, eye, memo_);
 }
 
-std::optional<measurement::Snapped> snapped_in_cone(const scene::PlacedScene& placed, const mesh::Ray& ray,
-                                                    const measurement::SnapOptions& options,
-                                                    measurement::MeshEdgesMemo& memo) {
-    constexpr int kRays = 8;
-    const glm::dvec3 side = glm::normalize(glm::cross(ray.direction, glm::dvec3(0.3, 0.5, 0.7)));
-    std::optional<measurement::Snapped> best;
-    for (int i = 0; i <= kRays; ++i) {
-        const double angle = 2 * std::numbers::pi * i / kRays;
-        const glm::dvec3 aside = side * std::cos(angle) + glm::cross(ray.direction, side) * std::sin(angle);
-        const double radius = i == 0 ? 0 : options.radius;
-        const mesh::Ray near{ray.origin, glm::normalize(ray.direction + aside * radius)};
-        const auto hit = mesh::pick(placed, near);
-        if (!hit) continue;
-        const auto found = measurement::snap(placed, *hit, ray, options, memo);
-        if (!found || (i > 0 && is_of_surface(found->feature.snap))) continue;
-        if (!best || is_better(*found, *best)) best = found;
-    }
-    return best;
+std::optional<measurement::Snapped> clicked(const scene::PlacedScene& placed, const glm::dvec3& at,
+                                            const glm::dvec3& eye, measurement::MeshEdgesMemo& memo) {
+    const auto find_hit = [&](const mesh::Ray& ray) { return mesh::pick(placed, ray); };
+    return measurement::snap_around(placed, {eye, glm::normalize(at - eye)}, find_hit, {.radius = kCone},
+                                    memo);
 }
 
 }  // namespace vrut::stability

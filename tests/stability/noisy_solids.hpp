@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "measurement/snapping.hpp"
+#include "measurement/snap_around.hpp"
 #include "mesh/picking.hpp"
 #include "scene/scene.hpp"
 #include "study.hpp"
@@ -60,9 +60,8 @@ private:
     measurement::MeshEdgesMemo memo_;
 };
 
-/// The best that a ray snaps to, or eight beside it in the cone, of which those count that find no surface.
-std::optional<measurement::Snapped> snapped_in_cone(const scene::PlacedScene& placed, const mesh::Ray& ray,
-                                                    const measurement::SnapOptions& options,
-                                                    measurement::MeshEdgesMemo& memo);
+/// The same of any scene.
+std::optional<measurement::Snapped> clicked(const scene::PlacedScene& placed, const glm::dvec3& at,
+                                            const glm::dvec3& eye, measurement::MeshEdgesMemo& memo);
 
 }  // namespace vrut::stability
