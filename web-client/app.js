@@ -55,7 +55,7 @@ const commands = commandsBy({ ask: (message) => connection.ask(message), refused
 const stage = new Stage({ store, commands, connection, meter, hasToken: token.inAddress });
 const offer = (text, label, act) => stage.offer(text, label, act);
 const nextTap = (text, signal) => stage.nextTap(text, signal);
-const menu = new Menu({ store, commands, meter, report, offer, nextTap, setLanguage: speak });
+const menu = new Menu({ store, commands, meter, report, offer, nextTap, snapping: stage.snapping, setLanguage: speak });
 const bar = new Bar({ store, commands, menu });
 
 store.subscribe(({ role }) => [role === 'control'], (wanted) => Object.assign(awake, { wanted }));

@@ -72,7 +72,8 @@ export class Bar {
     }, { icon: 'back' });
     this.#back = back;
     const sections = button(say('sections.title'), () => this.#menu.open(sections, 'sections'), { icon: 'section' });
-    sections.classList.add('spare');
+    const measures = button(say('measures.title'), () => this.#menu.open(measures, 'measures'), { icon: 'measure' });
+    for (const spare of [sections, measures]) spare.classList.add('spare');
     const more = button(say('bar.more'), () => this.#menu.open(more), { icon: 'menu' });
     this.#open(null);
     this.#bar.ariaLabel = say('bar.label');
@@ -84,6 +85,7 @@ export class Bar {
       opens(say('parts.variants'), 'variants', () => this.#variants()),
       opens(say('parts.doors'), 'door', () => this.#doors()),
       sections,
+      measures,
       more,
     );
     this.#showBack();

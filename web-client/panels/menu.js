@@ -1,6 +1,7 @@
 import { button, element } from '../base/element.js';
 import { language, say } from '../base/texts.js';
 import { Dialogs } from './dialogs.js';
+import { measuresSection } from './measures-section.js';
 import { partsSection } from './parts-section.js';
 import { presentationSection } from './presentation-section.js';
 import { foldable } from './section.js';
@@ -9,6 +10,9 @@ import { viewsSection } from './views-section.js';
 import { Watching } from './watching.js';
 
 /** @import { Page, Section } from './section.js' */
+
+/** Where the menu comes from below, over most of the picture: as in style.css. */
+const SHEET = '(max-width: 37.5rem) and (orientation: portrait)';
 
 /** The panel of folding sections, and the button that opens it. */
 export class Menu {
@@ -23,7 +27,7 @@ export class Menu {
   /** @type {Section[]} */
   #sections = [];
 
-  /** Empty until `rebuild`. @param {Page & {setLanguage: (code: string) => void}} page */
+  /** Empty until `rebuild`. @param {Omit<Page, 'makeRoom'> & {setLanguage: (code: string) => void}} page */
   constructor(page) {
     const { store } = page;
     const opener = /** @type {HTMLButtonElement} */ (document.getElementById('menu-button'));
@@ -33,8 +37,8 @@ export class Menu {
     this.#stage = stage;
     this.#button = opener;
     this.#panel = panel;
-    this.#page = page;
-    this.#dialogs = new Dialogs(page);
+    this.#page = { ...page, makeRoom: () => matchMedia(SHEET).matches && this.close() };
+    this.#dialogs = new Dialogs(this.#page);
     this.#watching = new Watching(store);
     opener.onclick = () => (stage.classList.contains('clean') ? this.#clean(false) : this.open(opener));
     panel.onkeydown = (event) => {
@@ -97,7 +101,7 @@ export class Menu {
   /** Makes everything anew, in the language in force. */
   rebuild() {
     const page = this.#page;
-    this.#sections = [partsSection, viewsSection, sectionsSection, presentationSection].map((build) => build(page));
+    this.#sections = [partsSection, viewsSection, sectionsSection, measuresSection, presentationSection].map((build) => build(page));
     this.#panel.ariaLabel = say('menu.title');
     this.#clean(this.#stage.classList.contains('clean'));
     const close = tool('close', say('menu.close'), () => this.close());

@@ -3,6 +3,7 @@ import { recall, remember } from '../base/memory.js';
 import { onChange } from '../base/store.js';
 
 /**
+ * @import { Snap, Snapped } from '../base/measures.js'
  * @import { Now, Store } from '../base/store.js'
  * @import { StateDocument } from '../base/protocol.js'
  * @import { Commands } from '../connection/commands.js'
@@ -14,11 +15,20 @@ import { onChange } from '../base/store.js';
  * What a section is given.
  *
  * @typedef {{store: Store, commands: Commands, meter: Meter, report: (error: *) => void,
- *   offer: (text: string, label: string, act: () => void) => void, nextTap: NextTap}} Page
+ *   offer: (text: string, label: string, act: () => void) => void, nextTap: NextTap, snapping: Snapping,
+ *   makeRoom: () => void}} Page `makeRoom`: closes the menu where that covers most of the picture
  *
  * Says what to tap, and promises where in which frame the picture is tapped next; null where it is not.
  *
  * @typedef {(text: string, signal: AbortSignal) => Promise<?{x: number, y: number, frame?: number}>} NextTap
+ *
+ * Picks on the picture snap to what is there, from `begin` to `end`. That is told the present session, which may come
+ * by itself, too. `ask` says what is wanted.
+ *
+ * @typedef {{
+ *   begin: (session: {take: (snapped?: Snapped) => void, ended: () => void}) => void,
+ *   ask: (asked: {text: string, to?: Snap[], taken: Snapped[]}) => void, end: () => void,
+ * }} Snapping
  *
  * What the page knows once it has a state.
  *

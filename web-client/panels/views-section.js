@@ -215,7 +215,7 @@ function places(title, none, go, remove, edit) {
 }
 
 /** Adds what is typed, or else what it shows; `add` gives nothing where that fails. */
-function field(label, action, add) {
+export function field(label, action, add) {
   const input = element('input', { ariaLabel: label });
   const form = element('form', { className: 'entry' }, input, element('button', {}, action));
   form.onsubmit = async (event) => {

@@ -16,9 +16,17 @@ export class Lines {
     this.#element = element;
   }
 
-  /** Says one sentence until it is replaced, '' for none, with a bar where a fraction, 0 to 1, is done. */
-  hold(about, text, fraction) {
-    if (text) this.#lasting.set(about, { sentence: whole(text), fraction });
+  /**
+   * Says one sentence until it is replaced, '' for none, with a bar where a fraction, 0 to 1, is done, and with a button
+   * where something can be done about it.
+   *
+   * @param {string} about
+   * @param {string} text
+   * @param {number} [fraction]
+   * @param {{label: string, act: () => void}} [action]
+   */
+  hold(about, text, fraction, action) {
+    if (text) this.#lasting.set(about, { sentence: whole(text), fraction, ...action });
     else this.#lasting.delete(about);
     this.#show();
   }

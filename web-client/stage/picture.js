@@ -1,5 +1,6 @@
 import { add, dot, scale, subtract } from '../base/vectors.js';
 import { directionThrough, isSamePose, placeOf, viewDirection } from '../navigation/camera.js';
+import { clippedPath, seenPath } from '../navigation/paths.js';
 import { decodeDepthMap, reciprocalDistanceAt } from '../warp/depth-map.js';
 import { similarity, withinReach } from './reach.js';
 import { screenOf } from './screen.js';
@@ -84,7 +85,7 @@ export class Picture {
     this.#seen = isWarped ? withinReach(from, asked) : from;
     this.#screen.draw(isWarped ? { header, from, to: this.#seen } : null);
     this.#move = isThere || isWarped ? null : similarity(from, asked, this.#view);
-    const { scale: factor, x, y } = this.#move ?? { scale: 1, x: 0, y: 0 };
+    const { scale: factor, x, y } = this.#moved;
     const shrunk = shrinkage(this.#box, this.#view);
     const { style } = this.#canvas;
     style.transform = this.#move ? `translate(${x * shrunk}px, ${y * shrunk}px) scale(${factor})` : '';
@@ -151,8 +152,57 @@ export class Picture {
     const { width, height } = this.#view;
     const { x, y, depth } = placeOf(this.#seen, width / height, point);
     if (!(depth > 0) || Math.abs(x) > 1 || Math.abs(y) > 1) return null;
-    const { scale: factor, x: right, y: down } = this.#move ?? { scale: 1, x: 0, y: 0 };
+    const { scale: factor, x: right, y: down } = this.#moved;
     return { x: (x * factor + 1) * width / 2 + right, y: (y * factor + 1) * height / 2 + down };
+  }
+
+  /**
+   * Where lines through points of the world are seen on the window, each in pieces.
+   *
+   * @param {number[][][]} lines
+   * @returns {Place[][][]}
+   */
+  paths(lines) {
+    const shown = this.lens(this.#seen);
+    if (!shown) return lines.map(() => []);
+    const { lens, onWindow } = shown;
+    const { width, height } = lens;
+    const { scale: factor, x: right, y: down } = this.#moved;
+    const { x: left, y: top } = onWindow({ x: 0, y: 0 });
+    const corner = onWindow({ x: width, y: height });
+    const area = { left, top, right: corner.x, bottom: corner.y };
+    const moved = ({ x, y }) => onWindow({
+      x: (x - width / 2) * factor + width / 2 + right, y: (y - height / 2) * factor + height / 2 + down,
+    });
+    return lines.map((points) => seenPath(lens, points).flatMap((piece) => clippedPath(piece.map(moved), area)));
+  }
+
+  /**
+   * Draws what is shown around a place of the window, so many times as large, all over a canvas.
+   *
+   * @param {HTMLCanvasElement} target with the window's pixels
+   * @param {Place} place
+   * @param {number} magnified
+   */
+  magnify(target, place, magnified) {
+    const context = target.getContext('2d', { alpha: false });
+    if (!context) return;
+    context.clearRect(0, 0, target.width, target.height);
+    if (!this.header) return;
+    const { width, height } = this.#view;
+    const { scale: factor, x: right, y: down } = this.#moved;
+    const at = this.mapping()(place.x, place.y);
+    const inPicture = this.#canvas.width / width;
+    const x = ((at.x - right - width / 2) / factor + width / 2) * inPicture;
+    const y = ((at.y - down - height / 2) / factor + height / 2) * inPicture;
+    const pixel = inPicture / (shrinkage(this.#box, this.#view) * factor * magnified * globalThis.devicePixelRatio);
+    const [across, tall] = [target.width * pixel, target.height * pixel];
+    context.drawImage(this.#screen.image(), x - across / 2, y - tall / 2, across, tall, 0, 0, target.width, target.height);
+  }
+
+  /** How the frame's own view is moved and scaled about its middle. @returns {Similarity} */
+  get #moved() {
+    return this.#move ?? { scale: 1, x: 0, y: 0 };
   }
 
   /** Where the canvas is when it is not moved. */

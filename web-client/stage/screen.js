@@ -48,6 +48,11 @@ class FlatScreen {
   }
 
   draw(_view) {}
+
+  /** What is shown, which can be copied in this task. */
+  image() {
+    return this.#canvas;
+  }
 }
 
 class WarpScreen {
@@ -58,6 +63,8 @@ class WarpScreen {
   #frame = null;
   /** What is on the canvas: the frame from where, or as it is; null: it is to be drawn. @type {?string} */
   #drawn = null;
+  /** @type {?{header: FrameHeader, from: Camera, to: Camera}} */
+  #view = null;
 
   constructor(canvas, gl, redraw) {
     this.#canvas = canvas;
@@ -88,12 +95,20 @@ class WarpScreen {
    * @param {?{header: FrameHeader, from: Camera, to: Camera}} view `from`: that it was drawn from
    */
   draw(view) {
+    this.#view = view;
     const matrix = view && warpMatrix(view.from, view.to, view.header.width / view.header.height);
     const wanted = String(matrix);
     if (wanted === this.#drawn) return;
     this.#drawn = wanted;
     if (matrix) this.#warp.draw({ matrix, backgroundTurns: view.header.depth?.backgroundTurns ?? false });
     else this.#warp.drawPlain();
+  }
+
+  /** As above. Once it is displayed, a canvas of WebGL has nothing to copy. */
+  image() {
+    this.#drawn = null;
+    if (this.#frame) this.draw(this.#view);
+    return this.#canvas;
   }
 }
 

@@ -4,12 +4,14 @@ import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
 import { Labels } from './labels.js';
 import { Lines, connectionSentence } from './lines.js';
+import { MeasureMarks } from './measure-marks.js';
 import { nextTap } from './next-tap.js';
 import { PartBar } from './part-bar.js';
 import { Picture } from './picture.js';
 import { PlaneHandle } from './plane-handle.js';
 import { Prediction } from './prediction.js';
 import { Presence } from './presence.js';
+import { Snapper } from './snapper.js';
 import { freeOf, watchViewSize } from './view-size.js';
 
 /**
@@ -34,7 +36,9 @@ export class Stage {
   #prediction = new Prediction({ surfaceAt: (camera, place) => this.#picture.surfaceAt(camera, place) });
   #labels = new Labels(find('labels'));
   #lines = new Lines(find('lines'));
+  #measures = new MeasureMarks(find('measure-lines'), find('measures'), () => this.#showMeasures());
   #handle;
+  #snapper;
   #noticesSeen = new Set();
   #controlBar;
   #input;
@@ -56,13 +60,22 @@ export class Stage {
     this.#handle = new PlaneHandle(/** @type {*} */ (find('handle')), {
       change: (name, plane) => commands.change({ sections: { [name]: plane } }),
     });
+    this.#snapper = new Snapper({ layer: find('snap-layer'), mark: find('snap'), loupe: find('loupe') }, {
+      pick: commands.pick,
+      mapping: () => this.#picture.mapping(),
+      frame: () => this.#frame,
+      paths: (lines) => this.#picture.paths(lines),
+      free: () => this.#free,
+      magnify: (canvas, place, factor) => this.#picture.magnify(canvas, place, factor),
+      say: (text) => this.#lines.hold('snap', text, undefined, { label: say('measures.done'), act: this.#endSnapping }),
+      wheel: (event) => this.#canvas.dispatchEvent(new WheelEvent('wheel', event)),
+    });
     const partBar = new PartBar(find('selection'), { commands, leave: () => this.#canvas.focus() });
     this.#input = new Input(this.#canvas, {
       send: (message) => connection.send(this.#prediction.withTouched(message)),
       mapping: () => this.#picture.mapping(),
       rules: () => connection.input,
-      // A server that has begun anew knows nothing of the frames before.
-      frame: () => (store.now.hasPicture ? store.now.header?.frame : undefined),
+      frame: () => this.#frame,
       soon: (action) =>
         (meter.lateMs(performance.now()) > LATE_MS ? setTimeout(action, THINNED_MS) : requestAnimationFrame(action)),
       moved: (message) => {
@@ -110,6 +123,10 @@ export class Stage {
     store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());
     store.subscribe(({ steers, state, handled, inset }) => [steers, state?.sections, handled, inset],
       () => this.#showHandle());
+    store.subscribe(({ state, inset, language }) => [state?.measures, state?.unit, inset, language],
+      () => this.#showMeasures());
+    // Without control nothing can be measured, and a node of another scene is another.
+    store.subscribe(({ steers, state, language }) => [steers, state?.scene?.file, language], () => this.#snapper.end());
     store.subscribe(({ state }) => [state?.scene?.notices, state?.notices],
       (...notices) => this.#passNotices(notices.flat().filter(Boolean)));
   }
@@ -169,9 +186,12 @@ export class Stage {
     this.#lines.hold('tap', text);
     const tap = await nextTap(find('tap'), signal);
     this.#lines.hold('tap', '');
-    const { hasPicture, header } = this.#store.now;
-    const frame = hasPicture ? header?.frame : undefined;
-    return tap && { ...this.#picture.mapping()(tap.clientX, tap.clientY), frame };
+    return tap && { ...this.#picture.mapping()(tap.clientX, tap.clientY), frame: this.#frame };
+  }
+
+  /** Picks that snap: the panels' Snapping. */
+  get snapping() {
+    return this.#snapper;
   }
 
   /** Says what was done, with a button for what can be done about it. */
@@ -207,6 +227,8 @@ export class Stage {
     this.#picture.look(this.#prediction.camera);
     this.#labels.show(this.#picture, this.#store.now.state?.markers);
     this.#showHandle();
+    this.#showMeasures();
+    this.#snapper.look();
     if (this.#prediction.flies) this.#flying ||= requestAnimationFrame(() => this.#flyOn());
   }
 
@@ -218,6 +240,24 @@ export class Stage {
     const isShown = name !== null && state && plane?.on && lens;
     this.#handle.show(isShown
       ? { ...lens, free: freeOf(lens.lens, inset), bounds: state.scene.bounds, name, plane } : null);
+  }
+
+  #showMeasures() {
+    const { state } = this.#store.now;
+    if (state?.measures) this.#measures.show(this.#picture, state.measures, state.unit, () => this.#free);
+  }
+
+  #endSnapping = () => this.#snapper.end();
+
+  /** The number of the frame shown. A server that has begun anew knows nothing of those before. */
+  get #frame() {
+    const { hasPicture, header } = this.#store.now;
+    return hasPicture ? header?.frame : undefined;
+  }
+
+  /** What no panel covers of the window. */
+  get #free() {
+    return freeOf({ width: window.innerWidth, height: window.innerHeight }, this.#store.now.inset);
   }
 
   #flyOn() {

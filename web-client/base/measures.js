@@ -1,0 +1,132 @@
+import { say, written } from './texts.js';
+
+/**
+ * What a pick has snapped to, in the space of its node; how many points, and which, is the protocol's.
+ *
+ * @typedef {'point'|'vertex'|'midpoint'|'center'|'edge'|'loop'|'plane'} Snap
+ * @typedef {{node: number, snap: Snap, points: number[][]}} Feature
+ *
+ * The same with where it is in the world.
+ *
+ * @typedef {{feature: Feature, point: number[], line: number[][]}} Snapped
+ *
+ * @typedef {'distance'|'parallel'|'angle'|'radius'|'length'} Kind
+ *
+ * Of the state: `value` is in units of the scene, or in degrees.
+ *
+ * @typedef {{kind: Kind, picks: Feature[], value?: number, components?: number[], line?: number[][], problem?: string}} Measure
+ *
+ * Metres per unit of the scene, and what lengths are shown in.
+ *
+ * @typedef {{metres: number, shown: string}} Unit
+ */
+
+/** The tools with their names, in the order in which they are shown. @type {Record<Kind, string>} */
+export const TOOLS = {
+  distance: 'measures.distance',
+  parallel: 'measures.parallel',
+  angle: 'measures.angle',
+  radius: 'measures.radius',
+  length: 'measures.length',
+};
+
+/** What a pick has snapped to, in words. @type {Record<Snap, string>} */
+export const SNAPS = {
+  point: 'snap.point',
+  vertex: 'snap.vertex',
+  midpoint: 'snap.midpoint',
+  center: 'snap.center',
+  edge: 'snap.edge',
+  loop: 'snap.loop',
+  plane: 'snap.plane',
+};
+
+/** What has a direction: two of them make an angle. @type {Snap[]} */
+const DIRECTED = ['edge', 'plane', 'center'];
+
+/** @param {Feature} pick */
+const isDirected = ({ snap }) => DIRECTED.includes(snap);
+
+/**
+ * What a tool asks for next: in words, and what a pick may snap to, all but loops where that is left out. Null: the picks
+ * are enough.
+ *
+ * @param {Kind} kind
+ * @param {Feature[]} picks so far
+ * @param {boolean} [isLoop] whether the length of an edge is that of all its loop
+ * @returns {?{ask: string, to?: Snap[]}}
+ */
+export function nextPick(kind, picks, isLoop = false) {
+  switch (kind) {
+    case 'distance':
+      return [{ ask: 'measures.firstPoint' }, { ask: 'measures.secondPoint' }][picks.length] ?? null;
+    case 'parallel':
+      return [{ ask: 'measures.base', to: DIRECTED }, { ask: 'measures.to' }][picks.length] ?? null;
+    case 'angle':
+      return nextOfAngle(picks);
+    case 'radius':
+      if (picks[0]?.snap === 'center') return null;
+      return [{ ask: 'measures.circle' }, { ask: 'measures.secondPoint' }, { ask: 'measures.thirdPoint' }][picks.length] ?? null;
+    default:
+      if (picks.length > 0) return null;
+      return isLoop ? { ask: 'measures.anyOfLoop', to: ['loop'] } : { ask: 'measures.edge', to: ['edge'] };
+  }
+}
+
+/** Of two directions, or of three points. @param {Feature[]} picks */
+function nextOfAngle(picks) {
+  if (picks.length === 0) return { ask: 'measures.firstSide' };
+  if (picks.length === 1) return { ask: isDirected(picks[0]) ? 'measures.secondSide' : 'measures.corner' };
+  return picks.length === 2 && !picks.every(isDirected) ? { ask: 'measures.thirdPoint' } : null;
+}
+
+/** Metres of each unit in which lengths are shown. @type {Record<string, number>} */
+const METRES = { mm: 0.001, cm: 0.01, m: 1, in: 0.0254 };
+
+/** The units in which lengths are shown. */
+export const UNITS = Object.keys(METRES);
+
+/** Metres to which a length is told: [below, to]. */
+const EXACT = [[1e-5, 1e-7], [0.1, 1e-5], [1, 1e-4], [100, 1e-3], [Infinity, 1e-2]];
+
+/**
+ * A length of so many units of the scene, in the unit that is shown: a gap to 0.01 mm, what is larger less exactly.
+ *
+ * @param {number} value
+ * @param {Unit} unit
+ */
+export function lengthIn(value, { metres, shown }) {
+  const length = value * metres;
+  const one = METRES[shown];
+  // Of zero there is nothing more to be told.
+  const [, exact] = length === 0 ? [0, 1] : /** @type {number[]} */ (EXACT.find(([below]) => Math.abs(length) < below));
+  const digits = Math.floor(Math.log10(one / exact) + 1e-9);
+  return written(length / one + 0, Math.max(digits, 0), shown);
+}
+
+/**
+ * The value of a measure in words; '' where it has none.
+ *
+ * @param {Measure} measure
+ * @param {Unit} unit
+ */
+export function valueWords({ kind, value }, unit) {
+  if (value === undefined) return '';
+  return kind === 'angle' ? say('measures.degrees', { degrees: written(value, 1) }) : lengthIn(value, unit);
+}
+
+/**
+ * How far the second point of a distance lies from the first along each axis, in words; null where that is not told.
+ *
+ * @param {Measure} measure
+ * @param {Unit} unit
+ * @returns {?Record<string, string>}
+ */
+export function componentWords({ components }, unit) {
+  if (!components) return null;
+  const [x, y, z] = components.map((along) => lengthIn(along, unit));
+  return { x, y, z };
+}
+
+/** What the server is told of a measure. @param {Measure} measure */
+export const picksOf = ({ kind, picks }) => ({ kind, picks });
