@@ -4,7 +4,7 @@ import { Server } from '../e2e/program.js';
 import { Tablet, launchBrowser } from '../e2e/tablet.js';
 
 const TABLET = { width: 1180, height: 820, pixelRatio: 1 };
-const SECTIONS = ['parts', 'views', 'presentation'];
+const SECTIONS = ['parts', 'views', 'measures', 'presentation'];
 const MOST_MS = 8;
 const DRAG_MS = 6000;
 const MOVE_EVERY_MS = 16;

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Picture, viewMapping } from '../../../web-client/stage/picture.js';
+import { replaceGlobals } from './fakes.js';
 
 function setUp() {
   const page = { drawn: [], closed: [], decoding: [], classes: new Set(), box: { left: 0, top: 0, width: 100, height: 50 } };
@@ -157,6 +158,45 @@ test('a point of the world is seen where the picture shows it, also while that i
   }
   page.picture.look(moved(-20, 4, 1.5));
   near([10, 5, 0], 100 + 75 - 20, 50 - 37.5 + 4);
+});
+
+test('lines are seen where the picture shows them, within it', async () => {
+  const page = setUp();
+  assert.deepEqual(page.picture.paths([[[0, 0, 0], [1, 0, 0]]]), [[]]);
+  const shown = page.picture.show(frame(1, { width: 200, height: 100, pixelRatio: 2 }));
+  page.decoded(0, 'one');
+  await shown;
+  page.box = { left: 10, top: 20, width: 100, height: 200 };
+  const rounded = () => page.picture.paths([[[0, 0, 0], [10, 5, 0], [40, 5, 0]], [[0, 0, 20], [0, 0, 30]]])
+    .map((pieces) => pieces.map((piece) => piece.map(({ x, y }) => [Math.round(x), Math.round(y)])));
+  assert.deepEqual(rounded(), [[[[60, 120], [85, 108], [110, 108]]], []]);
+  page.picture.look(moved(-20, 4, 1.5));
+  assert.deepEqual(rounded(), [[[[50, 122], [88, 103], [110, 103]]], []]);
+});
+
+test('what is around a place is drawn larger', async () => {
+  const page = setUp();
+  const calls = [];
+  const target = {
+    width: 240, height: 240,
+    getContext: () => ({ clearRect: () => {}, drawImage: (_, ...numbers) => calls.push(numbers.map(Math.round)) }),
+  };
+  const replaced = replaceGlobals({ devicePixelRatio: 2 });
+  try {
+    page.picture.magnify(target, { x: 0, y: 0 }, 3);
+    assert.deepEqual(calls, []);
+    const shown = page.picture.show(frame(1));
+    page.decoded(0, 'one');
+    await shown;
+    page.picture.magnify(target, { x: 50, y: 20 }, 3);
+    // 240 pixels are 120 of the window and 40 of the view, which is drawn with two pixels for each.
+    assert.deepEqual(calls, [[60, 0, 80, 80, 0, 0, 240, 240]]);
+    page.picture.look(moved(10, 0, 2));
+    page.picture.magnify(target, { x: 50, y: 20 }, 3);
+    assert.ok(calls[1][2] === 40);
+  } finally {
+    replaced();
+  }
 });
 
 test('coordinates go through the bars beside a fitted picture', () => {

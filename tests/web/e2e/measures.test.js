@@ -1,0 +1,138 @@
+import assert from 'node:assert/strict';
+import { after, before, describe, test } from 'node:test';
+import { pose } from './camera.js';
+import { Server } from './program.js';
+import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
+
+const SIZE = { width: 1180, height: 820, pixelRatio: 2 };
+/** Two corners of the number plate, which no panel covers. */
+const CORNERS = [[110, 500], [213, 553]];
+
+describe('measures on a tablet', { skip: browserIsMissing }, () => {
+  let server;
+  let browser;
+  let tablet;
+  let page;
+
+  before(async () => {
+    server = await Server.start();
+    browser = await launchBrowser();
+    tablet = await Tablet.open(browser, server.address, SIZE, { reducedMotion: 'reduce' });
+    ({ page } = tablet);
+    await tablet.shows((await tablet.wire.still()).frame);
+    await tablet.pictures(false);
+  });
+
+  after(async () => {
+    await browser?.close();
+    await server?.stop();
+  });
+
+  const state = () => tablet.wire.state;
+  const until = (what, get) => tablet.wire.until(what, get);
+  const panel = (of = page) => of.locator('[data-section="measures"]');
+  const button = (label) => panel().getByRole('button', { name: label, exact: true });
+  const line = (text) => page.locator('#lines').getByText(text);
+  const number = (name, of = page) => of.locator(`#measures [data-measure="${name}"]`);
+  /** Touches a place until something is seen in the loupe, and lets go. */
+  const pick = async ([x, y], word) => {
+    await tablet.finger('touchStart', [{ id: 0, x, y }]);
+    await page.locator('#loupe p').getByText(word, { exact: true }).waitFor();
+    await tablet.finger('touchEnd', []);
+  };
+
+  test('a distance between two corners, by a loupe, while nothing else moves', async () => {
+    const before = structuredClone(state().camera);
+    const mark = tablet.wire.sent.length;
+    await page.locator('#bar').getByRole('button', { name: 'Measure' }).tap();
+    await panel().getByText('Nothing is measured yet.').waitFor();
+    await button('Distance').tap();
+    await line('Touch the first point.').waitFor();
+    const [x, y] = CORNERS[0];
+    await tablet.finger('touchStart', [{ id: 0, x: x + 20, y: y - 20 }]);
+    await page.locator('#loupe').waitFor();
+    await tablet.finger('touchMove', [{ id: 0, x, y }]);
+    await page.locator('#loupe p').getByText('corner', { exact: true }).waitFor();
+    await tablet.screenshot('measures-loupe');
+    await tablet.finger('touchEnd', []);
+    await page.locator('#loupe').waitFor({ state: 'hidden' });
+    await line('Touch the second point.').waitFor();
+    await pick(CORNERS[1], 'corner');
+    const { kind, picks, value, components } = await until('the measure', () => state().measures['Distance 1']);
+    assert.deepEqual([kind, picks.map(({ snap }) => snap)], ['distance', ['vertex', 'vertex']]);
+    assert.ok(Math.abs(Math.hypot(...components) - value) < 1e-9 * value);
+    await line('Touch the first point.').waitFor();
+    await number('Distance 1').waitFor();
+    await page.keyboard.press('Escape');
+    await line('Touch the first point.').waitFor({ state: 'detached' });
+    assert.deepEqual(pose(state().camera), pose(before));
+    assert.deepEqual(tablet.wire.sent.slice(mark).filter(({ type }) => type.startsWith('pointer')), []);
+  });
+
+  test('its number is in the list, too, and unfolds how far it goes along the axes', async () => {
+    const words = await number('Distance 1').textContent();
+    await panel().getByRole('button', { name: `Distance 1 ${words}` }).waitFor();
+    await number('Distance 1').tap();
+    await number('Distance 1').getByText(/X .* Y .* Z /).waitFor();
+    await tablet.screenshot('measures-distance');
+    await number('Distance 1').tap();
+    await panel().getByText('cm', { exact: true }).tap();
+    await until('the unit', () => state().unit.shown === 'cm');
+    await number('Distance 1').getByText(/ cm$/).waitFor();
+  });
+
+  test('it is removed, which is undone, and gets another name', async () => {
+    const { picks, value } = structuredClone(state().measures['Distance 1']);
+    await button('Remove Distance 1').tap();
+    await until('none', () => !state().measures['Distance 1']);
+    await number('Distance 1').waitFor({ state: 'detached' });
+    await page.locator('#lines').getByRole('button', { name: 'Undo' }).tap();
+    await until('the measure', () => state().measures['Distance 1']);
+    assert.deepEqual(state().measures['Distance 1'].picks, picks);
+    assert.equal(state().measures['Distance 1'].value, value);
+    await panel().getByRole('button', { name: /^Distance 1/ }).tap();
+    await panel().getByRole('textbox', { name: 'New name of Distance 1' }).fill('Plate');
+    await page.keyboard.press('Enter');
+    await until('the name', () => state().measures.Plate && !state().measures['Distance 1']);
+    await number('Plate').waitFor();
+  });
+
+  test('numbers of one place do not cover each other', async () => {
+    const { kind, picks } = state().measures.Plate;
+    await tablet.say({ type: 'patch', patch: { measures: { A: { kind, picks }, B: { kind, picks } } } });
+    for (const name of ['A', 'B', 'Plate']) await number(name).waitFor();
+    const boxes = await Promise.all(['A', 'B', 'Plate'].map((name) => number(name).boundingBox()));
+    for (const [i, a] of boxes.entries()) {
+      for (const b of boxes.slice(0, i)) {
+        assert.ok(a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y,
+          JSON.stringify([a, b]));
+      }
+    }
+    await tablet.screenshot('measures-three');
+  });
+
+  test('what cannot be measured says why', async () => {
+    await button('Parallel distance').tap();
+    await line('Touch an edge, a face or a circle.').waitFor();
+    await tablet.say({ type: 'patch', patch: { measures: { Odd: { kind: 'length', picks: [{ ...state().measures.A.picks[0] }] } } } });
+    await panel().getByRole('button', { name: 'Parallel distance', pressed: true }).tap();
+    await line('Touch an edge').waitFor({ state: 'detached' });
+  });
+
+  test('who only watches sees the numbers, and no tools', async () => {
+    const watcher = await Tablet.open(browser, `${server.address}#watch`, SIZE, { reducedMotion: 'reduce' });
+    await watcher.shows((await watcher.wire.still()).frame);
+    await number('Plate', watcher.page).waitFor();
+    assert.equal(await number('Plate', watcher.page).textContent(), await number('Plate').textContent());
+    assert.equal(await watcher.page.locator('#menu-button:visible, #bar:visible').count(), 0);
+    assert.ok(await watcher.page.locator('#measure-lines .line').first().getAttribute('d'));
+    await watcher.screenshot('measures-watcher');
+    assert.deepEqual(watcher.complaints, []);
+    await watcher.page.context().close();
+  });
+
+  test('in all this the browser had nothing to complain of', () => {
+    assert.deepEqual(tablet.complaints, []);
+    assert.deepEqual(tablet.wire.errors, []);
+  });
+});
