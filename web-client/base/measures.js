@@ -1,6 +1,8 @@
 import { say, written } from './texts.js';
 
 /**
+ * @import { StateDocument } from './protocol.js'
+ *
  * What a pick has snapped to, in the space of its node; how many points, and which, is the protocol's.
  *
  * @typedef {'point'|'vertex'|'midpoint'|'center'|'edge'|'loop'|'plane'} Snap
@@ -12,7 +14,7 @@ import { say, written } from './texts.js';
  *
  * @typedef {'distance'|'parallel'|'angle'|'radius'|'length'} Kind
  *
- * Of the state: `value` is in units of the scene, or in degrees.
+ * What is measured, and what that comes to: `value` is in units of the scene, or in degrees.
  *
  * @typedef {{kind: Kind, picks: Feature[], value?: number, components?: number[], line?: number[][], problem?: string}} Measure
  *
@@ -128,5 +130,12 @@ export function componentWords({ components }, unit) {
   return { x, y, z };
 }
 
-/** What the server is told of a measure. @param {Measure} measure */
-export const picksOf = ({ kind, picks }) => ({ kind, picks });
+/**
+ * The measures of the state by name, each with what it comes to.
+ *
+ * @param {Pick<StateDocument, 'measures'|'measured'>} state
+ * @returns {Record<string, Measure>}
+ */
+export function measuresOf({ measures, measured }) {
+  return Object.fromEntries(Object.entries(measures).map(([name, measure]) => [name, { ...measure, ...measured[name] }]));
+}

@@ -1,5 +1,5 @@
 import { button, element } from '../base/element.js';
-import { TOOLS, UNITS, componentWords, nextPick, picksOf, valueWords } from '../base/measures.js';
+import { TOOLS, UNITS, componentWords, measuresOf, nextPick, valueWords } from '../base/measures.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { byName, choice, facts, numbers, rows, toggle } from './controls.js';
@@ -91,14 +91,14 @@ function measureList({ commands: { patch }, store, offer, report }) {
   const all = () => stateOf(store).measures;
   let chosen = /** @type {?string} */ (null);
   const remove = async (name) => {
-    const before = picksOf(all()[name]);
+    const before = all()[name];
     const undo = () => patch({ measures: { [name]: before } });
     if (await patch({ measures: { [name]: null } })) offer(say('measures.removed', { name }), say('views.undo'), undo);
   };
   const rename = async (name, to) => {
     // What is there would stay as it is.
     if (Object.hasOwn(all(), to)) return report(new Error(say('measures.nameTaken', { name: to })));
-    const isRenamed = await patch({ measures: { [to]: picksOf(all()[name]), [name]: null } });
+    const isRenamed = await patch({ measures: { [to]: all()[name], [name]: null } });
     if (isRenamed) choose(to);
     return isRenamed;
   };
@@ -108,7 +108,8 @@ function measureList({ commands: { patch }, store, offer, report }) {
     remove: () => remove(name),
   }));
   const show = () => {
-    const { measures, unit } = stateOf(store);
+    const measures = measuresOf(stateOf(store));
+    const { unit } = stateOf(store);
     list.show(Object.keys(measures).sort(byName)
       .map((name) => [name, { measure: measures[name], unit, isChosen: name === chosen }]));
   };
@@ -119,7 +120,7 @@ function measureList({ commands: { patch }, store, offer, report }) {
   };
   return {
     content: [list.element],
-    show: onChange(({ state: { measures, unit } }) => [measures, unit], show),
+    show: onChange(({ state: { measures, measured, unit } }) => [measures, measured, unit], show),
   };
 }
 

@@ -1,3 +1,4 @@
+import { measuresOf } from '../base/measures.js';
 import { errorSentence, holderName, noticeSentence, say } from '../base/texts.js';
 import { ControlBar } from './control.js';
 import { FingerMarks } from './finger-marks.js';
@@ -123,7 +124,7 @@ export class Stage {
     store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());
     store.subscribe(({ steers, state, handled, inset }) => [steers, state?.sections, handled, inset],
       () => this.#showHandle());
-    store.subscribe(({ state, inset, language }) => [state?.measures, state?.unit, inset, language],
+    store.subscribe(({ state, inset, language }) => [state?.measures, state?.measured, state?.unit, inset, language],
       () => this.#showMeasures());
     // Without control nothing can be measured, and a node of another scene is another.
     store.subscribe(({ steers, state, language }) => [steers, state?.scene?.file, language], () => this.#snapper.end());
@@ -244,7 +245,7 @@ export class Stage {
 
   #showMeasures() {
     const { state } = this.#store.now;
-    if (state?.measures) this.#measures.show(this.#picture, state.measures, state.unit, () => this.#free);
+    if (state?.measures) this.#measures.show(this.#picture, measuresOf(state), state.unit, () => this.#free);
   }
 
   #endSnapping = () => this.#snapper.end();

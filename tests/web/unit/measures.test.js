@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
-import { SNAPS, TOOLS, componentWords, lengthIn, nextPick, picksOf, valueWords } from '../../../web-client/base/measures.js';
+import { SNAPS, TOOLS, componentWords, lengthIn, measuresOf, nextPick, valueWords } from '../../../web-client/base/measures.js';
 import { say, setLanguage } from '../../../web-client/base/texts.js';
 import { clippedPath, middleOfPaths, seenPath } from '../../../web-client/navigation/paths.js';
 import { layOut, leaderOf } from '../../../web-client/stage/chip-layout.js';
@@ -57,9 +57,10 @@ describe('the picks of a tool', () => {
     for (const key of Object.values(SNAPS)) assert.ok(say(key));
   });
 
-  test('the server is told what was picked, and not what it says itself', () => {
-    const measure = { kind: 'length', picks: [pick('edge')], value: 3, line: [], problem: 'none' };
-    assert.deepEqual(picksOf(measure), { kind: 'length', picks: [pick('edge')] });
+  test('a measure is known with what it comes to, as soon as that is told', () => {
+    const measures = { a: { kind: 'length', picks: [pick('edge')] }, b: { kind: 'radius', picks: [pick('center')] } };
+    const measured = { a: { value: 3, line: [] } };
+    assert.deepEqual(measuresOf({ measures, measured }), { a: { ...measures.a, value: 3, line: [] }, b: measures.b });
   });
 });
 
