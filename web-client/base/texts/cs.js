@@ -241,7 +241,7 @@ export const cs = {
   'measures.secondPoint': 'Dotkněte se druhého bodu.',
   'measures.thirdPoint': 'Dotkněte se třetího bodu.',
   'measures.base': 'Dotkněte se hrany, plochy nebo kružnice.',
-  'measures.to': 'Dotkněte se místa, ke kterému měříte.',
+  'measures.to': 'Dotkněte se další hrany, plochy nebo bodu.',
   'measures.firstSide': 'Dotkněte se hrany, plochy nebo bodu.',
   'measures.secondSide': 'Dotkněte se další hrany, plochy nebo bodu.',
   'measures.corner': 'Dotkněte se vrcholu úhlu.',

@@ -234,7 +234,7 @@ export const en = {
   'measures.secondPoint': 'Touch the second point.',
   'measures.thirdPoint': 'Touch the third point.',
   'measures.base': 'Touch an edge, a face or a circle.',
-  'measures.to': 'Touch what the distance leads to.',
+  'measures.to': 'Touch another edge, face or point.',
   'measures.firstSide': 'Touch an edge, a face or a point.',
   'measures.secondSide': 'Touch another edge or face, or a point.',
   'measures.corner': 'Touch the corner of the angle.',
