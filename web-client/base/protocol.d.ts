@@ -172,6 +172,13 @@ export type ClientPick = {
   frame?: number;
   /** Asks for exactly one answer, which has the same `id`. It rises. */
   id?: number;
+  /** Find a corner, an edge or the like near by, too. */
+  snap?: {
+    /** What may be found; empty: all but `loop`. */
+    to?: Array<'point' | 'vertex' | 'midpoint' | 'center' | 'edge' | 'loop' | 'plane'>;
+    /** CSS pixels from the point of the view. */
+    within: number;
+  };
   /** Select the node, make the point the centre of rotation, or look at it, too. */
   then?: 'select' | 'center' | 'lookAt';
   /** Pass transparent parts; the realistic mode always passes those of alpha 0. */
@@ -622,6 +629,15 @@ export type EventLogRevised = {
   revision: number;
 };
 
+export type Feature = {
+  /** The node whose surface it is on. */
+  node: number;
+  /** Of the node's own space: one, and for the last four kinds two more. */
+  points: Array<Array<number>>;
+  /** What it is. */
+  snap: 'point' | 'vertex' | 'midpoint' | 'center' | 'edge' | 'loop' | 'plane';
+};
+
 export type FrameHeader = {
   /** The state's camera, with matrices. */
   camera: {
@@ -871,6 +887,15 @@ export type ServerPicked = {
   path?: Array<string>;
   /** In the world. */
   point?: Array<number>;
+  /** What `snap` has found, if anything. */
+  snapped?: {
+    /** To be one of the `picks` of a measure. */
+    feature: Feature;
+    /** Of an edge, a circle or a loop, in the world; else empty. */
+    line: Array<Array<number>>;
+    /** Its first point, in the world. */
+    point: Array<number>;
+  };
   type: 'picked';
 };
 
@@ -1099,6 +1124,24 @@ export type StateDocument = {
     /** As in the file. */
     name: string;
   }>;
+  /** What `measures` come to as the parts stand now, by name. */
+  measured: Record<string, {
+    /** Of a distance: the way from the first pick to the second, in the world. */
+    components?: Array<number>;
+    /** To be drawn, in the world; empty where a part is not shown. */
+    line: Array<Array<number>>;
+    /** A sentence: why there is no value. */
+    problem?: string;
+    /** In the scene's unit, or degrees. */
+    value?: number;
+  }>;
+  /** Distances, angles and the like, by name. */
+  measures: Record<string, {
+    /** What is measured. */
+    kind: 'distance' | 'parallel' | 'angle' | 'radius' | 'length';
+    /** Where. A new measure must have them. */
+    picks: Array<Feature>;
+  }>;
   /** What input does. */
   navigation: {
     /** Turn about the scene's vertical, and stop at the poles. */
@@ -1233,6 +1276,13 @@ export type StateDocument = {
     /** Where it goes: 0 closed, 1 open. */
     to: number;
   }>;
+  /** Of lengths. */
+  unit: {
+    /** Of one unit of the scene; as the file says, or 0.001. */
+    metres: number;
+    /** In what pages show lengths. */
+    shown: 'mm' | 'cm' | 'm' | 'in';
+  };
   /** Saved cameras, by name. */
   views: Record<string, {
     /** The centre of rotation. */
@@ -1278,6 +1328,10 @@ export type StatePatch = {
     point?: null | Array<number>;
     text?: null | string;
   }>;
+  measures?: null | Record<string, null | {
+    kind?: null | 'distance' | 'parallel' | 'angle' | 'radius' | 'length';
+    picks?: null | Array<Feature>;
+  }>;
   navigation?: null | {
     keepUpright?: null | boolean;
     panSpeed?: null | number;
@@ -1318,6 +1372,10 @@ export type StatePatch = {
   }>;
   selection?: null | {
     node?: null | number;
+  };
+  unit?: null | {
+    metres?: null | number;
+    shown?: null | 'mm' | 'cm' | 'm' | 'in';
   };
   views?: null | Record<string, null | {
     center?: null | Array<number>;

@@ -79,7 +79,7 @@ describe('measures on a tablet', { skip: browserIsMissing }, () => {
     await number('Distance 1').tap();
     await panel().getByText('cm', { exact: true }).tap();
     await until('the unit', () => state().unit.shown === 'cm');
-    await number('Distance 1').getByText(/ cm$/).waitFor();
+    await number('Distance 1').getByText(/cm$/).waitFor();
   });
 
   test('it is removed, which is undone, and gets another name', async () => {
