@@ -238,7 +238,7 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       }, () => key().attenuation.join() === '1,12,0', seen);
       await within('light', 'Linear').fill('-1');
       await page.keyboard.press('Enter');
-      await page.waitForFunction(() => document.querySelectorAll('.numbers input')[1].value === '12');
+      await page.waitForFunction(() => document.querySelectorAll('[data-section="light"] .numbers input')[1].value === '12');
       assert.deepEqual(key().attenuation, [1, 12, 0]);
       // The second before the server has said anything to the first.
       await changes(() => section('light').locator('.numbers input').evaluateAll((fields) => {
@@ -255,7 +255,7 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       await tablet.wire.until('a refusal', () => errors.length > refused);
       assert.equal(await within('light', 'Linear').inputValue(), '1e31');
       await within('light', 'Constant').focus();
-      await page.waitForFunction(() => document.querySelectorAll('.numbers input')[1].value === '5');
+      await page.waitForFunction(() => document.querySelectorAll('[data-section="light"] .numbers input')[1].value === '5');
     });
 
     test('the background', async () => {
