@@ -45,6 +45,8 @@ export const SNAPS = {
 
 /** What has a direction: two of them make an angle. @type {Snap[]} */
 const DIRECTED = ['edge', 'plane', 'center'];
+/** What points of a circle are, where it is not known as one. @type {Snap[]} */
+const POINTS = ['vertex', 'midpoint', 'edge', 'point'];
 
 /** @param {Feature} pick */
 const isDirected = ({ snap }) => DIRECTED.includes(snap);
@@ -55,10 +57,11 @@ const isDirected = ({ snap }) => DIRECTED.includes(snap);
  *
  * @param {Kind} kind
  * @param {Feature[]} picks so far
- * @param {boolean} [isLoop] whether the length of an edge is that of all its loop
+ * @param {{isLoop?: boolean, isByPoints?: boolean}} [options] whether the length of an edge is that of all its loop, and
+ *   whether a circle is told by three of its points
  * @returns {?{ask: string, to?: Snap[]}}
  */
-export function nextPick(kind, picks, isLoop = false) {
+export function nextPick(kind, picks, { isLoop = false, isByPoints = false } = {}) {
   switch (kind) {
     case 'distance':
       return [{ ask: 'measures.firstPoint' }, { ask: 'measures.secondPoint' }][picks.length] ?? null;
@@ -67,8 +70,8 @@ export function nextPick(kind, picks, isLoop = false) {
     case 'angle':
       return nextOfAngle(picks);
     case 'radius':
-      if (picks[0]?.snap === 'center') return null;
-      return [{ ask: 'measures.circle' }, { ask: 'measures.secondPoint' }, { ask: 'measures.thirdPoint' }][picks.length] ?? null;
+      if (isByPoints) return nextOfCircle(picks);
+      return picks.length === 0 ? { ask: 'measures.circle', to: ['center'] } : null;
     default:
       if (picks.length > 0) return null;
       return isLoop ? { ask: 'measures.anyOfLoop', to: ['loop'] } : { ask: 'measures.edge', to: ['edge'] };
@@ -80,6 +83,12 @@ function nextOfAngle(picks) {
   if (picks.length === 0) return { ask: 'measures.firstSide' };
   if (picks.length === 1) return { ask: isDirected(picks[0]) ? 'measures.secondSide' : 'measures.corner' };
   return picks.length === 2 && !picks.every(isDirected) ? { ask: 'measures.thirdPoint' } : null;
+}
+
+/** Of three of its points. @param {Feature[]} picks */
+function nextOfCircle(picks) {
+  const ask = ['measures.firstPoint', 'measures.secondPoint', 'measures.thirdPoint'][picks.length];
+  return ask ? { ask, to: POINTS } : null;
 }
 
 /** Metres of each unit in which lengths are shown. @type {Record<string, number>} */

@@ -45,18 +45,23 @@ function toolButtons({ commands, store, report, snapping, makeRoom }) {
   const start = (kind, tool) => {
     /** @type {Snapped[]} */
     let taken = [];
-    const next = () => nextPick(kind, taken.map(({ feature }) => feature), isLoop);
+    /** Since no circle was where one was touched. */
+    let isByPoints = false;
+    const next = () => nextPick(kind, taken.map(({ feature }) => feature), { isLoop, isByPoints });
     const ask = () => {
       if (!next()) {
         add(kind, taken);
         taken = [];
+        isByPoints = false;
       }
       const { ask: what, to } = /** @type {{ask: string}&*} */ (next());
       snapping.ask({ text: say(what), to, taken });
     };
     const take = (snapped) => {
-      if (!snapped) return report(new Error(say('measures.nothing')));
-      taken = [...taken, snapped];
+      const hasNoCircle = !snapped && kind === 'radius' && !isByPoints;
+      isByPoints ||= hasNoCircle;
+      if (snapped) taken = [...taken, snapped];
+      else report(new Error(say(hasNoCircle ? 'measures.noCircle' : 'measures.nothing')));
       ask();
     };
     const ended = () => {

@@ -2,9 +2,9 @@
  * @import { Area } from '../navigation/plane-drags.js'
  * @import { Place } from '../navigation/drags.js'
  *
- * A chip that is to lie at a place, as large as it is.
+ * A chip that is to lie at a place, as large as it is; `isBeside`: it would hide what it tells of.
  *
- * @typedef {{name: string, at: Place, width: number, height: number}} Wanted
+ * @typedef {{name: string, at: Place, width: number, height: number, isBeside?: boolean}} Wanted
  *
  * Where its middle is, and in which of the places about the wanted one.
  *
@@ -44,11 +44,12 @@ export function layOut(wanted, area, before) {
     }
     return false;
   };
-  const known = wanted.filter(({ name }) => before.has(name));
-  const moved = known.filter((chip) => !lay(chip, [before.get(chip.name)]));
-  const all = SLOTS.keys();
-  const slots = [...all];
-  for (const chip of [...moved, ...wanted.filter(({ name }) => !before.has(name))]) lay(chip, slots);
+  const first = [...SLOTS.keys()];
+  const others = [...first.slice(1), 0];
+  /** @param {Wanted} one */
+  const stays = ({ name, isBeside }) => before.has(name) && !(isBeside && before.get(name) === 0);
+  const moved = wanted.filter(stays).filter((chip) => !lay(chip, [before.get(chip.name)]));
+  for (const chip of [...moved, ...wanted.filter((one) => !stays(one))]) lay(chip, chip.isBeside ? others : first);
   return laid;
 }
 

@@ -28,6 +28,16 @@ function alongAxes(measure, unit) {
   return [say('measures.xyz', { x, y, z })];
 }
 
+/** Pixels of a line that its value is to leave free, or else it lies beside. */
+const SHOWN = 24;
+
+/** How far lines reach across or down. @param {Place[][]} lines */
+function extentOf(lines) {
+  const reach = (numbers) => Math.max(...numbers) - Math.min(...numbers);
+  const places = lines.flat();
+  return Math.max(reach(places.map(({ x }) => x)), reach(places.map(({ y }) => y)));
+}
+
 /** Draws measures over the picture: their lines, and their values in chips that do not cover each other. */
 export class MeasureMarks {
   #svg;
@@ -51,21 +61,23 @@ export class MeasureMarks {
    * @param {{paths: (lines: number[][][]) => Place[][][]}} picture where lines are seen on the window, in pieces
    * @param {Record<string, Measure>} measures
    * @param {Unit} unit
-   * @param {() => Area} free what no panel covers of the window
+   * @param {() => Area} uncovered what no panel covers of the window
    */
-  show(picture, measures, unit, free) {
+  show(picture, measures, unit, uncovered) {
     const all = Object.entries(measures);
     if (all.length === 0 && this.#chips.size === 0) return;
     const lines = all.map(([, { line = [] }]) => line);
     const seen = picture.paths(lines);
     const ends = picture.paths(lines.flatMap(endsOf)).flatMap(([piece]) => piece?.slice(0, 1) ?? []);
-    const area = free();
+    const area = uncovered();
     /** @type {Wanted[]} */
     const wanted = [];
     for (const [i, [name, measure]] of all.entries()) {
-      const at = measure.value === undefined ? null : middleOfPaths(seen[i].flatMap((piece) => clippedPath(piece, area)));
-      const chip = at && this.#chip(name, measure, unit);
-      if (chip) wanted.push({ name, at, width: chip.width, height: chip.height });
+      const free = measure.value === undefined ? [] : seen[i].flatMap((piece) => clippedPath(piece, area));
+      const at = middleOfPaths(free);
+      if (!at) continue;
+      const { width, height } = this.#chip(name, measure, unit);
+      wanted.push({ name, at, width, height, isBeside: extentOf(free) < width + SHOWN });
     }
     const laid = layOut(wanted, area, this.#slots);
     this.#slots = new Map(laid.map(({ name, slot }) => [name, slot]));

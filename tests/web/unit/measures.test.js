@@ -13,33 +13,35 @@ afterEach(() => setLanguage('en'));
 describe('the picks of a tool', () => {
   const pick = (snap) => ({ node: 1, snap, points: [] });
   /** How many picks a tool takes of those that are made. */
-  const taken = (kind, ...snaps) => {
+  const taken = (kind, snaps, options) => {
     let count = 0;
-    while (nextPick(kind, snaps.slice(0, count).map(pick))) count += 1;
+    while (nextPick(kind, snaps.slice(0, count).map(pick), options)) count += 1;
     return count;
   };
 
   test('two for distances, one for the length of an edge', () => {
-    assert.equal(taken('distance', 'vertex', 'plane'), 2);
-    assert.equal(taken('parallel', 'edge', 'edge'), 2);
-    assert.equal(taken('length', 'edge'), 1);
+    assert.equal(taken('distance', ['vertex', 'plane']), 2);
+    assert.equal(taken('parallel', ['edge', 'edge']), 2);
+    assert.equal(taken('length', ['edge']), 1);
   });
 
   test('two directions make an angle, or three points', () => {
     for (const a of ['edge', 'plane', 'center']) {
-      for (const b of ['edge', 'plane', 'center']) assert.equal(taken('angle', a, b, 'vertex'), 2);
+      for (const b of ['edge', 'plane', 'center']) assert.equal(taken('angle', [a, b, 'vertex']), 2);
     }
-    assert.equal(taken('angle', 'vertex', 'edge', 'edge'), 3);
-    assert.equal(taken('angle', 'edge', 'midpoint', 'edge'), 3);
+    assert.equal(taken('angle', ['vertex', 'edge', 'edge']), 3);
+    assert.equal(taken('angle', ['edge', 'midpoint', 'edge']), 3);
   });
 
   test('a circle has a radius by itself, or three points make one', () => {
-    assert.equal(taken('radius', 'center'), 1);
-    assert.equal(taken('radius', 'vertex', 'center', 'point'), 3);
+    assert.equal(taken('radius', ['center']), 1);
+    assert.deepEqual(nextPick('radius', []).to, ['center']);
+    assert.equal(taken('radius', ['vertex', 'vertex', 'point'], { isByPoints: true }), 3);
+    assert.ok(!nextPick('radius', [], { isByPoints: true }).to.includes('center'));
   });
 
   test('each says what it may be: loops are asked for alone', () => {
-    assert.deepEqual(nextPick('length', [], true).to, ['loop']);
+    assert.deepEqual(nextPick('length', [], { isLoop: true }).to, ['loop']);
     assert.deepEqual(nextPick('length', []).to, ['edge']);
     assert.deepEqual(nextPick('parallel', []).to, ['edge', 'plane', 'center']);
     assert.equal(nextPick('parallel', [pick('edge')]).to, undefined);
@@ -48,8 +50,10 @@ describe('the picks of a tool', () => {
   test('all of it has words', () => {
     for (const kind of Object.keys(TOOLS)) {
       for (const picks of [[], [pick('edge')], [pick('vertex')], [pick('vertex'), pick('vertex')]]) {
-        const next = nextPick(kind, picks);
-        if (next) assert.match(say(next.ask), /^Touch .*\.$/);
+        for (const isByPoints of [false, true]) {
+          const next = nextPick(kind, picks, { isByPoints });
+          if (next) assert.match(say(next.ask), /^Touch .*\.$/);
+        }
       }
       assert.ok(say(TOOLS[kind]));
     }
@@ -190,6 +194,15 @@ describe('the layout of chips', () => {
     const laid = layOut(wanted, area, new Map());
     assert.ok(laid.length >= 30 && laid.length < 256);
     checkApart(boxes(laid, wanted), area);
+  });
+
+  test('one that would hide what it tells of lies beside that, also if it did not before', () => {
+    for (const before of [new Map(), new Map([['a', 0]])]) {
+      const [laid] = layOut([{ ...chip('a', 300, 200), isBeside: true }], area, before);
+      assert.ok(laid.slot > 0 && laid.y <= 200 - 28);
+    }
+    const [kept] = layOut([chip('a', 300, 200)], area, new Map([['a', 3]]));
+    assert.equal(kept.slot, 3);
   });
 
   test('at the edges they are moved inwards', () => {
