@@ -105,14 +105,17 @@ const EXACT = [[1e-5, 1e-7], [0.1, 1e-5], [1, 1e-4], [100, 1e-3], [Infinity, 1e-
  *
  * @param {number} value
  * @param {Unit} unit
+ * @param {number} [whole] of which it is a part, and told as exactly
  */
-export function lengthIn(value, { metres, shown }) {
-  const length = value * metres;
+export function lengthIn(value, { metres, shown }, whole = value) {
   const one = METRES[shown];
+  const size = Math.abs(whole * metres);
   // Of zero there is nothing more to be told.
-  const [, exact] = length === 0 ? [0, 1] : /** @type {number[]} */ (EXACT.find(([below]) => Math.abs(length) < below));
-  const digits = Math.floor(Math.log10(one / exact) + 1e-9);
-  return written(length / one + 0, Math.max(digits, 0), shown);
+  const [, exact] = size === 0 ? [0, 1] : /** @type {number[]} */ (EXACT.find(([below]) => size < below));
+  const digits = Math.max(Math.floor(Math.log10(one / exact) + 1e-9), 0);
+  const rounded = Math.round(value * metres / one * 10 ** digits);
+  // Not the minus of a zero.
+  return written(rounded / 10 ** digits + 0, digits, shown);
 }
 
 /**
@@ -133,9 +136,9 @@ export function valueWords({ kind, value }, unit) {
  * @param {Unit} unit
  * @returns {?Record<string, string>}
  */
-export function componentWords({ components }, unit) {
+export function componentWords({ components, value }, unit) {
   if (!components) return null;
-  const [x, y, z] = components.map((along) => lengthIn(along, unit));
+  const [x, y, z] = components.map((along) => lengthIn(along, unit, value));
   return { x, y, z };
 }
 

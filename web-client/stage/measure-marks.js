@@ -1,6 +1,5 @@
 import { element } from '../base/element.js';
 import { componentWords, valueWords } from '../base/measures.js';
-import { say } from '../base/texts.js';
 import { clippedPath, middleOfPaths } from '../navigation/paths.js';
 import { layOut, leaderOf } from './chip-layout.js';
 import { dotData, pathData } from './snap-signs.js';
@@ -20,12 +19,10 @@ function endsOf(line) {
   return String(ends[0]) === String(ends[1]) ? [] : ends.map((end) => [end, end]);
 }
 
-/** @param {Measure} measure @param {Unit} unit @returns {string[]} a line, or none */
+/** @param {Measure} measure @param {Unit} unit @returns {string[]} a line for each axis, or none */
 function alongAxes(measure, unit) {
-  const parts = componentWords(measure, unit);
-  if (!parts) return [];
-  const { x, y, z } = parts;
-  return [say('measures.xyz', { x, y, z })];
+  const parts = Object.entries(componentWords(measure, unit) ?? {});
+  return parts.map(([axis, words]) => `${axis.toUpperCase()} ${words}`);
 }
 
 /** Pixels of a line that its value is to leave free, or else it lies beside. */

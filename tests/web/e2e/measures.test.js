@@ -74,7 +74,7 @@ describe('measures on a tablet', { skip: browserIsMissing }, () => {
     const words = await number('Distance 1').textContent();
     await panel().getByRole('button', { name: `Distance 1 ${words}` }).waitFor();
     await number('Distance 1').tap();
-    await number('Distance 1').getByText(/X .* Y .* Z /).waitFor();
+    for (const axis of ['X', 'Y', 'Z']) await number('Distance 1').getByText(new RegExp(`^${axis} .*mm$`)).waitFor();
     await tablet.screenshot('measures-distance');
     await number('Distance 1').tap();
     await panel().getByText('cm', { exact: true }).tap();

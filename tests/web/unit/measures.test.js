@@ -106,8 +106,11 @@ describe('values in words', () => {
   });
 
   test('a distance along the axes', () => {
-    assert.deepEqual(componentWords({ kind: 'distance', picks: [], components: [1, -2.5, -0] }, mm),
+    assert.deepEqual(componentWords({ kind: 'distance', picks: [], value: 2.69, components: [1, -2.5, -0] }, mm),
       { x: '1\u00a0mm', y: '-2.5\u00a0mm', z: '0\u00a0mm' });
+    // As exactly as the distance itself.
+    assert.deepEqual(componentWords({ kind: 'distance', picks: [], value: 530.09, components: [530, 0.0015, -0.0002] }, mm),
+      { x: '530\u00a0mm', y: '0\u00a0mm', z: '0\u00a0mm' });
     assert.equal(componentWords({ kind: 'radius', picks: [] }, mm), null);
   });
 });

@@ -256,7 +256,6 @@ export const cs = {
   'measures.nameTaken': 'Měření „{name}“ už existuje.',
   'measures.newNameOf': 'Nový název měření „{name}“',
   'measures.degrees': '{degrees}°',
-  'measures.xyz': 'X {x}, Y {y}, Z {z}',
   'measures.unit': 'Délky v',
   'measures.sceneUnit': '1 jednotka scény je',
 

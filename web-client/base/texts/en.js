@@ -249,7 +249,6 @@ export const en = {
   'measures.nameTaken': 'There is a measure “{name}” already.',
   'measures.newNameOf': 'New name of {name}',
   'measures.degrees': '{degrees}°',
-  'measures.xyz': 'X {x}, Y {y}, Z {z}',
   'measures.unit': 'Lengths in',
   'measures.sceneUnit': '1 unit of the scene is',
 
