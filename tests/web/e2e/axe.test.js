@@ -37,9 +37,12 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
 
       const looks = {
         'the menu closed': async () => {},
-        'a part selected, and the views': async () => {
-          await tablet.say({ type: 'patch', patch: { selection: { node: 100 }, views: { Left: {} } } });
+        'a part selected, a measure, and the views': async () => {
+          const picks = [0, 1].map((x) => ({ node: 100, snap: 'point', points: [[x, 0, 0]] }));
+          const measures = { Gap: { kind: 'distance', picks } };
+          await tablet.say({ type: 'patch', patch: { selection: { node: 100 }, views: { Left: {} }, measures } });
           await page.locator('#part span').waitFor();
+          await page.locator('#measures button').waitFor();
           await page.locator('#bar').getByRole('button', { name: 'Views' }).tap();
           await page.locator('#strip').getByRole('button', { name: 'Left' }).waitFor();
         },
