@@ -129,7 +129,7 @@ export class Snapper {
     const { taken } = this.#asked;
     const snapped = this.#latest.last?.answer?.snapped;
     this.#mark.hidden = !snapped && taken.length === 0;
-    // Two ends, or what is before the eye alone would not be told from what is not.
+    // A point as a line of no length, which is left out where it is not seen.
     const points = [...taken, ...(snapped ? [snapped] : [])].map(({ point }) => [point, point]);
     const [rubber, line, ...dots] = this.#page.paths([
       points.map(([point]) => point), snapped?.line ?? [], ...points,
