@@ -26,8 +26,8 @@ import { dotData, pathData, showSign } from './snap-signs.js';
 const WITHIN = 16;
 
 /**
- * While it is in use, fingers on the picture pick what they touch, and steer nothing: a loupe shows what that is. The
- * mouse sees it without a button, too.
+ * While it is in use, a finger on the picture picks what it touches, and steers nothing: a loupe shows what that is. The
+ * mouse sees it without a button, too. Two fingers and other buttons of a mouse go on to the picture and steer.
  */
 export class Snapper {
   #layer;
@@ -40,7 +40,7 @@ export class Snapper {
   #asked = { text: '', taken: [] };
   /** Ends what listens during a session. */
   #listening = new AbortController();
-  /** @type {?{pointerId: number, at: Place}} */
+  /** With its press. @type {?{pointerId: number, at: Place, pressed: PointerEvent}} */
   #finger = null;
   /** How many fingers have left whose picks are not answered yet. */
   #takes = 0;
@@ -57,7 +57,7 @@ export class Snapper {
    *   pick: (question: Omit<Question, 'at'>) => Promise<*>, mapping: () => (x: number, y: number) => Place,
    *   frame: () => number|undefined, paths: (lines: number[][][]) => Place[][][], free: () => Area,
    *   magnify: (canvas: HTMLCanvasElement, place: Place, factor: number) => void,
-   *   say: (text: string) => void, wheel: (event: WheelEvent) => void,
+   *   say: (text: string) => void, wheel: (event: WheelEvent) => void, press: (event: PointerEvent) => void,
    * }} page `paths`: where lines of the world are seen on the window, in pieces; `free`: what no panel covers of that
    */
   constructor({ layer, mark, loupe }, page) {
@@ -158,12 +158,23 @@ export class Snapper {
   #down(event) {
     event.preventDefault();
     const { pointerId, pointerType, button } = event;
-    if (this.#finger || button !== 0) return;
+    if (this.#finger || button !== 0) {
+      this.#handOver(event);
+      return;
+    }
     this.#layer.setPointerCapture(pointerId);
-    this.#finger = { pointerId, at: placeOf(event) };
+    this.#finger = { pointerId, at: placeOf(event), pressed: event };
     // What was under the finger before is elsewhere.
     if (pointerType !== 'mouse' && this.#takes === 0) this.#forgetAnswers();
     this.#want(placeOf(event));
+  }
+
+  /** The picture gets a press, and that of the finger that is down already: it captures both. */
+  #handOver(event) {
+    const before = this.#finger?.pressed;
+    this.#forget();
+    if (before) this.#page.press(before);
+    this.#page.press(event);
   }
 
   #move(event) {

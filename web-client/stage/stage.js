@@ -70,6 +70,7 @@ export class Stage {
       magnify: (canvas, place, factor) => this.#picture.magnify(canvas, place, factor),
       say: (text) => this.#lines.hold('snap', text, undefined, { label: say('measures.done'), act: this.#endSnapping }),
       wheel: (event) => this.#canvas.dispatchEvent(new WheelEvent('wheel', event)),
+      press: (event) => this.#canvas.dispatchEvent(new PointerEvent('pointerdown', event)),
     });
     const partBar = new PartBar(find('selection'), { commands, leave: () => this.#canvas.focus() });
     this.#input = new Input(this.#canvas, {

@@ -34,13 +34,14 @@ let asked;
 let said;
 let told;
 let wheels;
+let presses;
 let snapper;
 let restore;
 
 beforeEach(() => {
   restore = replaceGlobals({ document: new EventTarget(), devicePixelRatio: 1 });
   elements = { layer: new Part(), mark: new Part(), loupe: new Part() };
-  [asked, said, told, wheels] = [[], [], [], []];
+  [asked, said, told, wheels, presses] = [[], [], [], [], []];
   snapper = new Snapper(elements, {
     pick: (question) => new Promise((answer) => asked.push({ question, answer })),
     mapping: () => (x, y) => ({ x: x / 2, y: y / 2 }),
@@ -50,6 +51,7 @@ beforeEach(() => {
     magnify: () => {},
     say: (text) => said.push(text),
     wheel: (event) => wheels.push(event),
+    press: ({ pointerId, clientX }) => presses.push([pointerId, clientX]),
   });
   snapper.begin({ take: (what) => told.push(what?.point[0] ?? null), ended: () => told.push('ended') });
   snapper.ask({ text: 'Touch it.', taken: [] });
@@ -121,14 +123,26 @@ test('a finger that comes before the answer to the last waits for its turn', asy
   assert.deepEqual(told, [5, 6]);
 });
 
-test('a second finger, another button and a cancelled finger take nothing', async () => {
+test('two fingers and other buttons steer, and take nothing', async () => {
   pointer('down', 100);
+  pointer('move', 120);
   pointer('down', 200, 300, { pointerId: 2 });
+  assert.equal(elements.loupe.hidden, true);
+  assert.deepEqual(presses, [[1, 100], [2, 200]]);
   pointer('up', 200, 300, { pointerId: 2 });
-  pointer('cancel', 100);
+  pointer('up', 120);
   await answer({ snapped: snapped(5) });
   pointer('down', 100, 300, { pointerType: 'mouse', button: 2 });
   pointer('up', 100, 300, { pointerType: 'mouse', button: 2 });
+  assert.deepEqual([told, presses.at(-1)], [[], [1, 100]]);
+  pointer('down', 300);
+  assert.equal(elements.loupe.hidden, false, 'and one finger picks again');
+});
+
+test('a cancelled finger takes nothing', async () => {
+  pointer('down', 100);
+  pointer('cancel', 100);
+  await answer({ snapped: snapped(5) });
   assert.deepEqual([told, places(), elements.loupe.hidden], [[], [], true]);
 });
 
