@@ -106,7 +106,7 @@ function scenes({ commands, store, offer }) {
   };
   const giveBack = async () => {
     const before = stateOf(store);
-    if (!await commands.patch({ views: null, markers: null, nodes: null })) return;
+    if (!await commands.patch({ views: null, markers: null, measures: null, unit: null, nodes: null })) return;
     const undo = () => commands.patch(backTo(before, stateOf(store)));
     offer(say('scenes.isAsInFile'), say('views.undo'), undo);
   };
@@ -140,21 +140,23 @@ function scenes({ commands, store, offer }) {
 /**
  * Whether nothing that is kept of a scene differs from its file, as far as a client can tell.
  *
- * @param {Pick<StateDocument, 'views'|'markers'|'nodes'>} state
+ * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'nodes'>} state
  */
-export function isAsInFile({ views, markers, nodes }) {
-  return !hasMembers(nodes) && !hasMembers(markers) && !Object.keys(views).some((name) => name !== 'home');
+export function isAsInFile({ views, markers, measures, nodes }) {
+  return ![nodes, markers, measures].some(hasMembers) && !Object.keys(views).some((name) => name !== 'home');
 }
 
 /**
  * The patch that makes what is kept of a scene what it was `before`.
  *
- * @param {Pick<StateDocument, 'views'|'markers'|'nodes'>} before
- * @param {Pick<StateDocument, 'views'|'markers'|'nodes'>} now
+ * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'unit'|'nodes'>} before
+ * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'nodes'>} now
  */
 export function backTo(before, now) {
   const all = (member) => ({ ...Object.fromEntries(Object.keys(now[member]).map((key) => [key, null])), ...before[member] });
-  return { views: all('views'), markers: all('markers'), nodes: all('nodes') };
+  return {
+    views: all('views'), markers: all('markers'), measures: all('measures'), unit: before.unit, nodes: all('nodes'),
+  };
 }
 
 function hasMembers(object = {}) {

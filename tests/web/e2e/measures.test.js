@@ -112,6 +112,28 @@ describe('measures on a tablet', { skip: browserIsMissing }, () => {
     await tablet.screenshot('measures-three');
   });
 
+  test('two fingers zoom while a tool is on, and pick nothing', async () => {
+    const before = structuredClone(state().camera);
+    const count = Object.keys(state().measures).length;
+    await button('Distance').tap();
+    await line('Touch the first point.').waitFor();
+    const fingers = (distance) => [-1, 1].map((side, id) => ({ id, x: 400 + side * distance, y: 300 }));
+    await tablet.finger('touchStart', fingers(60).slice(0, 1));
+    await page.locator('#loupe').waitFor();
+    await tablet.finger('touchStart', fingers(60));
+    await page.locator('#loupe').waitFor({ state: 'hidden' });
+    for (const distance of [70, 85, 100, 120]) await tablet.finger('touchMove', fingers(distance));
+    await tablet.finger('touchEnd', []);
+    await until('the camera nearer', () => {
+      const [was, is] = [before, state().camera].map(({ eye, focus }) => Math.hypot(...eye.map((x, i) => x - focus[i])));
+      return is < 0.7 * was;
+    });
+    await line('Touch the first point.').waitFor();
+    await page.keyboard.press('Escape');
+    assert.equal(Object.keys(state().measures).length, count);
+    await tablet.say({ type: 'patch', patch: { camera: pose(before) } });
+  });
+
   test('what has no value says why', async () => {
     const { node } = state().measures.A.picks[0];
     const edge = (...to) => ({ node, snap: 'edge', points: [[0, 0, 0], [0, 0, 0], to] });

@@ -76,18 +76,19 @@ for (const [name, size] of Object.entries(SIZES)) {
       await asInFile().waitFor({ state: 'hidden' });
       await tablet.say({ type: 'patch', patch: {
         nodes: { 100: { active: false } }, views: { Left: {}, home: { fov: 30 } }, markers: { a: { point: [0, 0, 0], text: 'Gap' } },
+        measures: { Wide: { picks: [[0, 0, 0], [1, 0, 0]].map((point) => ({ node: 100, snap: 'point', points: [point] })) } },
       } });
       await until('a view', () => state().views.Left);
-      const { views, markers, nodes } = structuredClone(state());
+      const { views, markers, measures, nodes } = structuredClone(state());
       await asInFile().tap();
       await until('the file', () => !state().views.Left);
-      assert.deepEqual([state().markers, state().nodes, Object.keys(state().views)], [{}, {}, ['home']]);
+      assert.deepEqual([state().markers, state().measures, state().nodes, Object.keys(state().views)], [{}, {}, {}, ['home']]);
       assert.notEqual(state().views.home.fov, 30);
       await asInFile().waitFor({ state: 'hidden' });
       await tablet.screenshot(`scenes-${name}-file`);
       await line('Undo').tap();
       await until('all as before', () => state().views.Left);
-      assert.deepEqual({ views: state().views, markers: state().markers, nodes: state().nodes }, { views, markers, nodes });
+      assert.deepEqual([state().views, state().markers, state().measures, state().nodes], [views, markers, measures, nodes]);
       await asInFile().waitFor();
     });
 

@@ -120,20 +120,27 @@ describe('views', () => {
 });
 
 describe('what is kept of a scene', () => {
-  const asInFile = { views: { home: { fov: 40 } }, markers: {}, nodes: {} };
+  const asInFile = { views: { home: { fov: 40 } }, markers: {}, measures: {}, nodes: {} };
 
   test('is as in the file without entries and other views', () => {
     assert.equal(isAsInFile(asInFile), true);
     assert.equal(isAsInFile({ ...asInFile, nodes: { 1: { active: false } } }), false);
     assert.equal(isAsInFile({ ...asInFile, markers: { a: {} } }), false);
+    assert.equal(isAsInFile({ ...asInFile, measures: { a: {} } }), false);
     assert.equal(isAsInFile({ ...asInFile, views: { home: {}, 'View 1': {} } }), false);
   });
 
   test('comes back as it was, without what has come since', () => {
-    const before = { views: { home: { fov: 30 }, A: { fov: 20 } }, markers: {}, nodes: { 1: { active: false } } };
-    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' } }, nodes: {} };
+    const [mm, cm] = ['mm', 'cm'].map((shown) => ({ metres: 1, shown }));
+    const before = {
+      views: { home: { fov: 30 }, A: { fov: 20 } }, markers: {}, measures: { w: { kind: 'angle' } }, unit: cm, nodes: { 1: { active: false } },
+    };
+    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' } }, measures: {}, unit: mm, nodes: {} };
     const patch = backTo(before, now);
-    assert.deepEqual(patch, { views: { home: { fov: 30 }, A: { fov: 20 }, B: null }, markers: { m: null }, nodes: { 1: { active: false } } });
+    assert.deepEqual(patch, {
+      views: { home: { fov: 30 }, A: { fov: 20 }, B: null }, markers: { m: null }, measures: { w: { kind: 'angle' } }, unit: cm,
+      nodes: { 1: { active: false } },
+    });
     assert.deepEqual(mergePatch(now, patch), before);
   });
 });
