@@ -1,6 +1,7 @@
 #include "measurement/chain_shapes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -76,28 +77,33 @@ std::optional<FlatCircle> least_squares(std::span<const glm::dvec2> points) {
     return circle;
 }
 
-bool are_on(const FlatCircle& circle, std::span<const glm::dvec2> points) {
+bool are_on(const FlatCircle& circle, std::span<const glm::dvec2> points, double tolerance) {
     return std::all_of(points.begin(), points.end(), [&](const glm::dvec2& p) {
-        return std::abs(glm::distance(p, circle.center) - circle.radius) <= kTolerance * circle.radius;
+        return std::abs(glm::distance(p, circle.center) - circle.radius) <= tolerance;
     });
 }
 
-/// How far the points run around the center, in radians; 0 if they turn back or leave out an arc.
-double arc_around(const glm::dvec2& center, std::span<const glm::dvec2> points, bool closed) {
-    double arc = 0;
+/// How far the points run around the center, in radians; 0 if they turn back or leave out an arc, or one step
+/// is more than a share of it all.
+double arc_around(const glm::dvec2& center, std::span<const glm::dvec2> points, bool closed,
+                  double largest_share) {
+    double arc = 0, longest = 0;
     const std::size_t steps = closed ? points.size() : points.size() - 1;
     for (std::size_t i = 0; i < steps; ++i) {
         const glm::dvec2 a = points[i] - center, b = points[(i + 1) % points.size()] - center;
         const double step = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
         if (!(step > 0 && step < kLongestStep)) return 0;
         arc += step;
+        longest = std::max(longest, step);
     }
-    return arc;
+    return longest <= largest_share * arc ? arc : 0;
 }
 
-}  // namespace
+enum class Extent { whole, part };
 
-std::optional<CirclePoints> fit_circle(std::span<const glm::dvec3> chain) {
+/// fit_circle(). A part of an arc may be short, but is within 1e-4 of its own extent, and no step is more
+/// than half of it: otherwise few points of a small arc and one far away lie on a large circle.
+std::optional<CirclePoints> fit(std::span<const glm::dvec3> chain, Extent extent) {
     if (chain.size() < kFewestPoints) return {};
     const bool closed = chain.front() == chain.back();
     const auto points = scaled(closed ? chain.first(chain.size() - 1) : chain);
@@ -114,13 +120,48 @@ std::optional<CirclePoints> fit_circle(std::span<const glm::dvec3> chain) {
         height = std::max(height, std::abs(glm::dot(*normal, p)));
     }
     const auto circle = least_squares(flat);
-    if (!circle || !(height <= kTolerance * circle->radius) || !are_on(*circle, flat)) return {};
-    const double arc = arc_around(circle->center, flat, closed);
-    if (!(arc > kLeastArc && arc < 2 * std::numbers::pi + kTolerance)) return {};
+    if (!circle) return {};
+    const double size = extent == Extent::whole ? circle->radius : std::min(1.0, circle->radius);
+    if (!(height <= kTolerance * size) || !are_on(*circle, flat, kTolerance * size)) return {};
+    const double arc = arc_around(circle->center, flat, closed, extent == Extent::whole ? 1 : 0.5);
+    if (!(arc > (extent == Extent::whole ? kLeastArc : 0) && arc < 2 * std::numbers::pi + kTolerance))
+        return {};
     const glm::dvec3 center = points->mean + (x * circle->center.x + y * circle->center.y) * points->extent;
     const glm::dvec2 to_first = glm::normalize(flat[0] - circle->center) * (circle->radius * points->extent);
     return CirclePoints{center, center + x * to_first.x + y * to_first.y,
                         center - x * to_first.y + y * to_first.x};
+}
+
+/// The run, made longer at both ends while its points lie on one circle.
+Run grown(std::span<const glm::dvec3> chain, Run run) {
+    const auto are_on_one = [&](const Run& longer) {
+        return fit(chain.subspan(longer.first, longer.last - longer.first + 1), Extent::part).has_value();
+    };
+    for (std::size_t step = std::bit_floor(chain.size()); step > 0; step /= 2)
+        if (run.last + step < chain.size() && are_on_one({run.first, run.last + step})) run.last += step;
+    for (std::size_t step = std::bit_floor(chain.size()); step > 0; step /= 2)
+        if (run.first >= step && are_on_one({run.first - step, run.last})) run.first -= step;
+    return run;
+}
+
+}  // namespace
+
+std::optional<CirclePoints> fit_circle(std::span<const glm::dvec3> chain) {
+    return fit(chain, Extent::whole);
+}
+
+std::optional<Run> arc_around_edge(std::span<const glm::dvec3> chain, std::size_t edge) {
+    constexpr std::size_t kSteps = kFewestPoints - 1;
+    std::optional<Run> longest;
+    for (std::size_t last = std::max(edge + 1, kSteps); last < chain.size() && last <= edge + kSteps;
+         ++last) {
+        const Run seed{last - kSteps, last};
+        if (!fit(chain.subspan(seed.first, kFewestPoints), Extent::part)) continue;
+        const Run run = grown(chain, seed);
+        const bool is_longer = !longest || run.last - run.first > longest->last - longest->first;
+        if (is_longer && fit_circle(chain.subspan(run.first, run.last - run.first + 1))) longest = run;
+    }
+    return longest;
 }
 
 std::vector<Run> straight_runs(std::span<const glm::dvec3> chain, double rounding) {

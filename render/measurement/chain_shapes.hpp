@@ -23,6 +23,10 @@ struct Run {
     std::size_t first = 0, last = 0;
 };
 
+/// Returns the longest run of points around the edge from `edge` to the next point that fit_circle() takes
+/// for a circle. None if there is none.
+std::optional<Run> arc_around_edge(std::span<const glm::dvec3> chain, std::size_t edge);
+
 /// The parts of a chain that are straight, each as long as can be: within 1e-6 of their length, and
 /// `rounding` besides.
 std::vector<Run> straight_runs(std::span<const glm::dvec3> chain, double rounding);

@@ -8,47 +8,48 @@ namespace {
 
 constexpr std::size_t kMostPoints = 64;
 
-/// A half-edge, walked along or against its direction.
-struct Step {
-    unsigned half_edge;
-    bool against;
-    bool operator==(const Step&) const = default;
-};
-
 unsigned neighbour(unsigned half_edge, unsigned steps) {
     return half_edge / 3 * 3 + (half_edge % 3 + steps) % 3;
 }
 
-/// The other edge of the triangle at the vertex to which the step leads.
-Step turned(const Step& step) { return {neighbour(step.half_edge, step.against ? 2 : 1), step.against}; }
+}  // namespace
 
-/// Across a smooth edge: the same way along it, seen in the triangle beyond.
-Step crossed(const WeldedMesh& mesh, const Step& step) {
-    const bool agrees = mesh.agrees_with_twin(step.half_edge);
-    return {mesh.twin(step.half_edge), agrees ? !step.against : step.against};
+/// The other edge of the triangle at the vertex to which the step leads.
+LoopWalk::Step LoopWalk::turned(const Step& step) {
+    return {neighbour(step.half_edge, step.against ? 2 : 1), step.against};
 }
 
 /// Turns back along the edge, in the same triangle.
-Step reversed(const Step& step) { return {step.half_edge, !step.against}; }
+LoopWalk::Step LoopWalk::reversed(const Step& step) { return {step.half_edge, !step.against}; }
 
-}  // namespace
+/// Across a smooth edge: the same way along it, seen in the triangle beyond.
+LoopWalk::Step LoopWalk::crossed(const Step& step) const {
+    const bool agrees = edges_.mesh().agrees_with_twin(step.half_edge);
+    return {edges_.mesh().twin(step.half_edge), agrees ? !step.against : step.against};
+}
+
+unsigned LoopWalk::vertex() const {
+    const WeldedMesh& mesh = edges_.mesh();
+    return step_.against ? mesh.end_of(step_.half_edge) : mesh.start_of(step_.half_edge);
+}
+
+bool LoopWalk::advance() {
+    step_ = turned(step_);
+    while (!edges_.is_feature(step_.half_edge)) {
+        if (steps_left_-- == 0) return false;
+        step_ = turned(reversed(crossed(step_)));
+    }
+    return steps_left_-- != 0;
+}
 
 std::vector<unsigned> edge_loop(const MeshEdges& edges, unsigned half_edge) {
-    const WeldedMesh& mesh = edges.mesh();
     std::vector<unsigned> loop;
     if (!edges.is_feature(half_edge)) return loop;
-    const Step start{half_edge, false};
-    Step step = start;
-    std::size_t budget = 4 * mesh.half_edge_count();
+    LoopWalk walk(edges, half_edge, 4 * edges.mesh().half_edge_count());
     do {
-        loop.push_back(step.against ? mesh.end_of(step.half_edge) : mesh.start_of(step.half_edge));
-        step = turned(step);
-        while (!edges.is_feature(step.half_edge)) {
-            if (budget-- == 0) return {};
-            step = turned(reversed(crossed(mesh, step)));
-        }
-        if (budget-- == 0) return {};
-    } while (!(step == start));
+        loop.push_back(walk.vertex());
+        if (!walk.advance()) return {};
+    } while (!walk.is_back());
     return loop;
 }
 

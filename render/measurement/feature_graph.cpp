@@ -6,13 +6,6 @@
 
 namespace vrut::measurement {
 
-namespace {
-
-/// Of 40 degrees, less a little: what turns by just that much is no corner.
-constexpr double kCornerCosine = 0.7660444431189780 - 1e-6;
-
-}  // namespace
-
 FeatureGraph::FeatureGraph(std::span<const glm::dvec3> positions,
                            std::span<const std::pair<unsigned, unsigned>> edges)
     : positions_(positions),

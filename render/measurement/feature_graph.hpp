@@ -7,6 +7,9 @@
 
 namespace vrut::measurement {
 
+/// Of 40 degrees, less a little: what turns by just that much is no corner.
+inline constexpr double kCornerCosine = 0.7660444431189780 - 1e-6;
+
 /// Which vertices are joined by feature edges, and the chains that these make.
 class FeatureGraph {
 public:

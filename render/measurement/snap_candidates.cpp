@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "measurement/chain_shapes.hpp"
+#include "measurement/edge_loop.hpp"
+#include "measurement/feature_graph.hpp"
 #include "measurement/vectors.hpp"
 
 namespace vrut::measurement {
@@ -16,6 +20,8 @@ constexpr double kCoarse = 4;       // edges longer than so many radii of the co
 constexpr double kCoplanar = 1e-6;  // sine of the angle between normals
 constexpr std::size_t kMostCoplanar = 64;
 constexpr double kSimilarity = 1e-9;
+constexpr std::size_t kMostRoundEdges = 512, kMostRoundSteps = 8 * kMostRoundEdges;
+constexpr std::size_t kMostArcEdges = 256;  // on each side of the nearest one
 /// Of coordinates: what files hold is often float. Of parts far from their origin it is less.
 constexpr double kFloatRounding = 1.2e-7, kFarthestInExtents = 1e3;
 
@@ -39,18 +45,63 @@ bool is_similarity(const glm::dmat3& matrix) {
     return true;
 }
 
+/// The points in the node's space if angles there are those in the world, else from the first one in the
+/// world.
+std::vector<glm::dvec3> undistorted(std::vector<glm::dvec3> chain, const glm::dmat3& world_from_node) {
+    if (is_similarity(world_from_node)) return chain;
+    const glm::dvec3 origin = chain[0];
+    for (glm::dvec3& point : chain) point = world_from_node * (point - origin);
+    return chain;
+}
+
 /// What is a circle in the world, in the node's space.
 std::optional<CirclePoints> circle_in_world(const std::vector<glm::dvec3>& chain,
                                             const glm::dmat3& world_from_node) {
-    if (is_similarity(world_from_node)) return fit_circle(chain);
-    std::vector<glm::dvec3> mapped;
-    mapped.reserve(chain.size());
-    for (const glm::dvec3& point : chain) mapped.push_back(world_from_node * (point - chain[0]));
-    auto circle = fit_circle(mapped);
-    if (!circle) return circle;
+    auto circle = fit_circle(undistorted(chain, world_from_node));
+    if (!circle || is_similarity(world_from_node)) return circle;
     const glm::dmat3 back = glm::inverse(world_from_node);
     for (glm::dvec3& point : *circle) point = chain[0] + back * point;
     return circle;
+}
+
+/// The indices of a chain's points around the edge from one to the next, in order, each point once.
+std::vector<std::size_t> indices_around(std::size_t edge, const std::vector<glm::dvec3>& chain) {
+    const bool is_closed = chain.front() == chain.back();
+    const std::size_t count = is_closed ? chain.size() - 1 : chain.size();
+    const std::size_t half = is_closed ? std::min(kMostArcEdges, count / 2) : kMostArcEdges;
+    std::vector<std::size_t> indices;
+    for (std::size_t k = 0; k < 2 * half; ++k) {
+        const std::size_t beyond = edge + 1 + k;  // by `half`
+        if (is_closed)
+            indices.push_back((beyond + count - half) % count);
+        else if (beyond >= half && beyond - half < count)
+            indices.push_back(beyond - half);
+    }
+    return indices;
+}
+
+/// Returns the vertices of the loop around a smooth face, its first one again at the end. Empty if it was
+/// tried, has too many edges, or turns by more than 40 degrees in the world, as at a corner.
+std::vector<unsigned> loop_without_corners(const Neighborhood& around, unsigned half_edge,
+                                           std::unordered_set<unsigned>& tried) {
+    std::vector<unsigned> loop;
+    const auto turns_at_last = [&](unsigned next) {
+        const std::size_t n = loop.size();
+        if (n < 2) return false;
+        const glm::dvec3 at = around.relative(loop[n - 1]);
+        const glm::dvec3 before = unit(at - around.relative(loop[n - 2]));
+        return glm::dot(before, unit(around.relative(next) - at)) < kCornerCosine;
+    };
+    LoopWalk walk(around.edges(), half_edge, kMostRoundSteps);
+    do {
+        if (!tried.insert(walk.half_edge()).second || loop.size() == kMostRoundEdges) return {};
+        if (turns_at_last(walk.vertex())) return {};
+        loop.push_back(walk.vertex());
+        if (!walk.advance()) return {};
+    } while (!walk.is_back());
+    if (loop.size() < 3 || turns_at_last(loop[0])) return {};
+    loop.push_back(loop[0]);
+    return turns_at_last(loop[1]) ? std::vector<unsigned>() : loop;
 }
 
 class CandidateSearch {
@@ -59,9 +110,9 @@ public:
         : around_(around), mesh_(around.edges().mesh()), to_(to) {}
 
     std::vector<Candidate> found() {
-        if (accepts(Snap::vertex)) add_vertices();
         if (accepts(Snap::midpoint) || accepts(Snap::center) || accepts(Snap::edge))
             for (const std::size_t index : around_.chains()) add_chain(around_.edges().chain(index));
+        if (accepts(Snap::vertex)) add_vertices();
         const auto triangle = around_.hit_triangle();
         if (triangle && accepts(Snap::loop)) add_loops(*triangle);
         if (triangle && accepts(Snap::plane)) add_plane(*triangle);
@@ -97,35 +148,114 @@ private:
         for (const auto& [vertex, shortest] : shortest_edges) add_vertex(vertex, shortest);
     }
     void add_vertex(unsigned vertex, double shortest_edge) {
-        const bool is_corner = !to_.empty() || around_.edges().is_corner(vertex);
+        const bool is_corner =
+            !to_.empty() || (around_.edges().is_corner(vertex) && !is_on_round_loop(vertex));
         if (is_corner || shortest_edge > coarse_length())
             add(is_corner ? Rank::corner : Rank::vertex, Snap::vertex, around_.relative(vertex),
                 {mesh_.positions()[vertex]});
     }
 
-    void add_chain(std::span<const unsigned> vertices) {
+    std::vector<glm::dvec3> points_of(std::span<const unsigned> vertices) const {
         std::vector<glm::dvec3> points;
         points.reserve(vertices.size());
         for (const unsigned vertex : vertices) points.push_back(mesh_.positions()[vertex]);
+        return points;
+    }
+
+    void add_chain(std::span<const unsigned> vertices) {
+        const bool is_open = vertices.front() != vertices.back();
+        if (accepts(Snap::center) && is_open && is_any_near(vertices) && add_round_loop(vertices)) return;
+        const std::vector<glm::dvec3> points = points_of(vertices);
         if (accepts(Snap::center))
             if (const auto circle = circle_in_world(points, around_.world_from_node()))
                 return add_center(points, *circle);
+        const std::vector<bool> is_round =
+            accepts(Snap::center) ? add_arc(points) : std::vector<bool>(points.size());
         if (!accepts(Snap::midpoint) && !accepts(Snap::edge)) return;
         for (const Run& run : straight_runs(points, rounding_of(points)))
-            add_straight_edge(points[run.first], points[run.last]);
+            if (!is_round[run.first] || !is_round[run.last - 1])
+                add_straight_edge(points[run.first], points[run.last]);
+    }
+
+    bool is_any_near(std::span<const unsigned> chain) const {
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+            const glm::dvec3 a = around_.relative(chain[i]), b = around_.relative(chain[i + 1]);
+            const glm::dvec3 nearest = glm::mix(a, b, around_.closest_to_ray(a, b));
+            if (around_.is_near(a) || around_.is_near(nearest) || around_.is_near(b)) return true;
+        }
+        return false;
+    }
+    bool is_on_round_loop(unsigned vertex) const {
+        const auto edge = round_edges_.lower_bound({vertex, 0});
+        return edge != round_edges_.end() && edge->first == vertex;
+    }
+    /// Half-edges of the smooth faces on both sides of an edge.
+    std::vector<unsigned> sides_of(unsigned start, unsigned end) const {
+        const glm::dvec3 &a = mesh_.positions()[start], &b = mesh_.positions()[end];
+        std::vector<unsigned> sides;
+        for (const auto& half_edge : {mesh_.find_half_edge(a, b), mesh_.find_half_edge(b, a)})
+            if (half_edge) sides.push_back(*half_edge);
+        if (sides.size() == 1 && mesh_.twin(sides[0]) != WeldedMesh::kNone)
+            sides.push_back(mesh_.twin(sides[0]));
+        return sides;
+    }
+    /// The circle that the loop on either side of a chain is. False if neither is one.
+    bool add_round_loop(std::span<const unsigned> chain) {
+        if (round_edges_.contains({chain[0], chain[1]})) return true;
+        for (const unsigned side : sides_of(chain[0], chain[1])) {
+            const std::vector<unsigned> loop = loop_without_corners(around_, side, tried_);
+            if (loop.empty()) continue;
+            const std::vector<glm::dvec3> points = points_of(loop);
+            const auto circle = circle_in_world(points, around_.world_from_node());
+            if (!circle) continue;
+            for (std::size_t i = 0; i + 1 < loop.size(); ++i)
+                round_edges_.insert({{loop[i], loop[i + 1]}, {loop[i + 1], loop[i]}});
+            add_center(points, *circle);
+            return true;
+        }
+        return false;
     }
 
     glm::dvec3 closest(const glm::dvec3& a, const glm::dvec3& b) const {
         return glm::mix(a, b, around_.closest_to_ray(around_.relative(a), around_.relative(b)));
     }
 
-    void add_center(const std::vector<glm::dvec3>& rim, const CirclePoints& circle) {
-        std::optional<glm::dvec3> best;
-        for (std::size_t i = 0; i + 1 < rim.size(); ++i) {
-            const glm::dvec3 seen = around_.relative(closest(rim[i], rim[i + 1]));
-            if (around_.is_near(seen) && (!best || around_.offset(seen) < around_.offset(*best))) best = seen;
+    struct Nearest {
+        std::size_t edge;
+        glm::dvec3 seen;  ///< its point nearest to the ray, relative to the hit
+    };
+    std::optional<Nearest> nearest_edge(const std::vector<glm::dvec3>& chain) const {
+        std::optional<Nearest> best;
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+            const glm::dvec3 seen = around_.relative(closest(chain[i], chain[i + 1]));
+            if (around_.is_near(seen) && (!best || around_.offset(seen) < around_.offset(best->seen)))
+                best = {i, seen};
         }
-        if (best) add(Rank::center, Snap::center, *best, {circle.begin(), circle.end()});
+        return best;
+    }
+
+    void add_center(const std::vector<glm::dvec3>& rim, const CirclePoints& circle) {
+        if (const auto nearest = nearest_edge(rim))
+            add(Rank::center, Snap::center, nearest->seen, {circle.begin(), circle.end()});
+    }
+
+    /// The circle of the arc at the chain's edge that is nearest to the ray. Returns which edges are the
+    /// arc's.
+    std::vector<bool> add_arc(const std::vector<glm::dvec3>& chain) {
+        std::vector<bool> is_round(chain.size());
+        const auto nearest = chain.size() > 2 ? nearest_edge(chain) : std::nullopt;
+        if (!nearest) return is_round;
+        const std::vector<std::size_t> indices = indices_around(nearest->edge, chain);
+        std::vector<glm::dvec3> points, arc;
+        for (const std::size_t index : indices) points.push_back(chain[index]);
+        const auto edge = std::find(indices.begin(), indices.end(), nearest->edge) - indices.begin();
+        const auto run =
+            arc_around_edge(undistorted(points, around_.world_from_node()), static_cast<std::size_t>(edge));
+        if (!run) return is_round;
+        for (std::size_t k = run->first; k <= run->last; ++k) arc.push_back(points[k]);
+        for (std::size_t k = run->first; k < run->last; ++k) is_round[indices[k]] = true;
+        if (const auto circle = circle_in_world(arc, around_.world_from_node())) add_center(arc, *circle);
+        return is_round;
     }
 
     void add_straight_edge(const glm::dvec3& a, const glm::dvec3& b) {
@@ -210,6 +340,8 @@ private:
     const Neighborhood& around_;
     const WeldedMesh& mesh_;
     const std::vector<Snap>& to_;
+    std::unordered_set<unsigned> tried_;                   // half-edges whose loops are known
+    std::set<std::pair<unsigned, unsigned>> round_edges_;  // of loops that are circles, in both directions
     std::vector<Candidate> found_;
 };
 

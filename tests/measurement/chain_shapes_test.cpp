@@ -77,6 +77,36 @@ TEST_CASE("points are on the circle within 1e-4 of its radius") {
     CHECK_FALSE(is_circle(mapped(arc(360, 32), scaled_by({1, 1.001, 1}))));
 }
 
+TEST_CASE("an arc in a chain is found from each of its edges, whole") {
+    for (const double degrees : {40.0, 90.0, 270.0})
+        for (const unsigned steps : {4U, 9U, 100U}) {
+            if (degrees > 90 && steps == 4) continue;
+            std::vector<glm::dvec3> chain = arc(degrees, steps);
+            const glm::dvec3 out = glm::cross(chain.back(), glm::dvec3(0, 0, -1));
+            chain.insert(chain.begin(), {{1, -5, 0}, {1, -2, 0}});
+            for (const double length : {2, 5}) chain.push_back(chain[steps + 2] + out * length);
+            for (std::size_t edge = 0; edge + 1 < chain.size(); ++edge) {
+                CAPTURE(degrees);
+                CAPTURE(steps);
+                CAPTURE(edge);
+                const auto run = measurement::arc_around_edge(chain, edge);
+                REQUIRE(run.has_value() == (edge >= 2 && edge < steps + 2));
+                if (run) CHECK((run->first == 2 && run->last == steps + 2));
+            }
+        }
+}
+
+TEST_CASE("an arc in a chain has 5 points, more than 30 degrees, and one radius") {
+    std::vector<glm::dvec3> chain = arc(90, 9);
+    chain.pop_back();
+    for (const glm::dvec3& point : arc(90, 9, 2)) chain.emplace_back(-point.y, point.x - 1, 0);
+    for (const std::size_t edge : {0U, 8U}) CHECK(measurement::arc_around_edge(chain, edge)->last == 9);
+    for (const std::size_t edge : {9U, 17U}) CHECK(measurement::arc_around_edge(chain, edge)->first >= 9);
+    CHECK_FALSE(measurement::arc_around_edge(arc(60, 3), 1));
+    CHECK_FALSE(measurement::arc_around_edge(arc(29.9, 8), 4));
+    CHECK(measurement::arc_around_edge(arc(30.1, 8), 4));
+}
+
 TEST_CASE("straight runs are as long as they can be") {
     const std::vector<glm::dvec3> chain{{0, 0, 0}, {1, 0, 0}, {3, 0, 0},    {3.5, 0, 0},
                                         {4, 1, 0}, {5, 2, 0}, {6.5, 3.5, 0}};

@@ -39,6 +39,15 @@ void check_points(const Variant& variant, const std::vector<Part>& parts, const 
     CHECK(found->offset <= kRadius);
 }
 
+void check_circle(const Variant& variant, const std::vector<Part>& parts, const glm::dvec3& at,
+                  const glm::dvec3& center, double radius, double tolerance = 1e-12) {
+    check_points(variant, parts, at, Snap::center, {center}, tolerance * radius);
+    const auto found = snapped_at(variant, parts, at);
+    for (const std::size_t k : {1U, 2U})
+        CHECK(std::abs(glm::distance(found->feature.points[0], found->feature.points[k]) - radius) <
+              tolerance * radius);
+}
+
 std::vector<Part> part(const scene::Geometry& geometry, const glm::dmat4& matrix = glm::dmat4(1)) {
     return {{7, geometry, {}, matrix}};
 }
@@ -157,6 +166,107 @@ TEST_CASE("a hexagon has six corners and no center") {
                      1e-15);
         check_points({}, parts, {(corner * 0.75 + next * 0.25) * 0.99, 0}, Snap::edge, {});
     }
+}
+
+TEST_CASE("a coarse hole is a circle, whose corners and facets do not count") {
+    for (const unsigned count : {10U, 12U, 16U}) {
+        const auto parts = part(plate(2, 1, count));
+        const glm::dvec2 corner = on_circle(1, 1, count), next = on_circle(1, 2, count);
+        for (const Variant& variant : variants())
+            for (const glm::dvec2& at : {corner, (corner + next) * 0.5, corner * 0.75 + next * 0.25}) {
+                check_circle(variant, parts, {at * 1.005, 0}, {0, 0, 0}, 1);
+                check_circle(variant, parts, {at * 0.995, 0}, {0, 0, 0}, 1);
+            }
+    }
+}
+
+TEST_CASE("a coarse cylinder has a circle, whichever way its triangles are turned") {
+    scene::Geometry cylinder = prism(circle_outline(0.5, 12), 1);
+    const glm::dvec2 corner = on_circle(0.5, 1, 12), facet = (corner + on_circle(0.5, 2, 12)) * 0.5;
+    for (const Variant& variant : variants())
+        for (const glm::dvec2& at : {corner, facet})
+            check_circle(variant, part(cylinder), {at * 0.99, 0}, {0, 0, 0}, 0.5);
+    for (std::size_t i = 0; i < cylinder.triangles.size(); i += 3)
+        std::swap(cylinder.triangles[i].x, cylinder.triangles[i].y);
+    scene::Material two_sided;
+    two_sided.two_sided = true;
+    for (unsigned i = 0; i < 12; ++i)
+        check_circle({}, {{7, cylinder, two_sided}}, {on_circle(0.495, i, 12), 0}, {0, 0, 0}, 0.5);
+}
+
+TEST_CASE("an octagon has eight corners and no center, and a circle nine") {
+    const auto octagon = part(plate(2, 1, 8)), nonagon = part(plate(2, 1, 9));
+    for (unsigned i = 0; i < 8; ++i) {
+        const glm::dvec2 corner = on_circle(1, i, 8), next = on_circle(1, i + 1, 8);
+        check_points({}, octagon, {corner * 1.01, 0}, Snap::vertex, {{corner, 0}});
+        check_points({}, octagon, {(corner + next) * 0.505, 0}, Snap::midpoint, {{(corner + next) * 0.5, 0}},
+                     1e-15);
+    }
+    CHECK_FALSE(snapped_at({}, octagon, {on_circle(1.01, 1, 8), 0}, {Snap::center}));
+    check_circle({}, nonagon, {on_circle(1.01, 1, 9), 0}, {0, 0, 0}, 1);
+}
+
+TEST_CASE("corners and facets of a coarse hole are found where they are asked for") {
+    const auto parts = part(plate(2, 1, 12));
+    const glm::dvec3 corner(on_circle(1, 1, 12), 0), next(on_circle(1, 2, 12), 0),
+        middle = (corner + next) * 0.5;
+    CHECK(snapped_at({}, parts, corner * 1.01, {Snap::vertex})->feature.points[0] == corner);
+    CHECK(near(snapped_at({}, parts, middle * 1.01, {Snap::midpoint})->feature.points[0], middle));
+    CHECK(snapped_at({}, parts, middle * 1.01, {Snap::edge})->feature.snap == Snap::edge);
+    CHECK(snapped_at({}, parts, middle * 1.01, {Snap::center})->feature.snap == Snap::center);
+}
+
+TEST_CASE("a coarse hole is a circle if it is one in the world") {
+    Outline ellipse = circle_outline(1, 10);
+    for (glm::dvec2& p : ellipse) p.x /= 3;
+    const auto stretched = part(ring(ellipse, square_outline(3, 10), -1, 0), scaled_by({3, 1, 1}));
+    const auto squeezed = part(plate(2, 1, 16), scaled_by({0.9, 1, 1}));
+    for (const Variant& variant : variants())
+        for (unsigned i = 0; i < 10; ++i) {
+            const auto found = snapped_at(variant, stretched, {on_circle(1.01, i, 10), 0});
+            REQUIRE(found);
+            CHECK(found->feature.snap == Snap::center);
+            CHECK(near(found->feature.points[0], {0, 0, 0}, 1e-12));
+        }
+    CHECK(snapped_at({}, squeezed, {0.905, 0, 0})->feature.snap == Snap::vertex);
+}
+
+TEST_CASE("a circle with corners has at most 512 edges") {
+    for (const unsigned count : {512U, 513U}) {
+        scene::Geometry disc = prism(circle_outline(4, count), 1);
+        for (unsigned i = 0; i < count; ++i) {
+            const auto first = static_cast<unsigned>(disc.positions.size());
+            for (const double size : {1.0, 1.1})
+                for (const double z : {0.0, -1.0})
+                    disc.positions.emplace_back(on_circle(4, i, count) * size, z);
+            disc.triangles.emplace_back(first, first + 3, first + 1);
+        }
+        const auto found = snapped_at({}, part(with_bounds(disc)), {on_circle(3.99, 1, count), 0});
+        REQUIRE(found);
+        CHECK(found->feature.snap == (count == 512 ? Snap::center : Snap::vertex));
+    }
+}
+
+TEST_CASE("a rounded corner has a center, and the sides beside it are straight") {
+    Outline outline;
+    for (unsigned i = 0; i < 24; ++i) {
+        const glm::dvec2 side(i < 6 || i >= 18 ? 2 : -2, i < 12 ? 1.5 : -1.5);
+        for (const unsigned at : {i, i + 1})
+            if (at == i || at % 6 == 0) outline.push_back(side + on_circle(2, at, 24));
+    }
+    const auto parts = part(prism(outline, 1));
+    for (const Variant& variant : variants())
+        for (unsigned i = 0; i < 24; ++i) {
+            const glm::dvec2 side(i < 6 || i >= 18 ? 2 : -2, i < 12 ? 1.5 : -1.5);
+            const glm::dvec2 facet = (on_circle(2, i, 24) + on_circle(2, i + 1, 24)) * 0.495;
+            check_circle(variant, parts, {side + facet, 0}, {side, 0}, 2, 1e-11);
+        }
+    check_points({}, parts, {3.98, 0, 0}, Snap::midpoint, {{4, 0, 0}}, 1e-15);
+    check_points({}, parts, {0.7, 3.48, 0}, Snap::edge, {});
+    const auto squeezed = part(prism(outline, 1), scaled_by({0.9, 1, 1}));
+    CHECK(
+        snapped_at({}, squeezed, {(on_circle(2, 3, 24) + glm::dvec2(2, 1.5)) * glm::dvec2(0.9, 1) * 0.995, 0})
+            ->feature.snap == Snap::edge);
 }
 
 TEST_CASE("edges of several pieces are one") {
