@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <unordered_set>
@@ -16,8 +17,9 @@ namespace vrut::measurement {
 
 namespace {
 
-constexpr double kCoarse = 4;       // edges longer than so many radii of the cone
-constexpr double kCoplanar = 1e-6;  // sine of the angle between normals
+constexpr double kCoarse = 4;          // edges longer than so many radii of the cone
+constexpr double kCoplanar = 1e-6;     // sine of the angle between normals
+constexpr double kMostRounded = 0.05;  // the same, however thin triangles are
 constexpr std::size_t kMostCoplanar = 64;
 constexpr double kSimilarity = 1e-9;
 constexpr std::size_t kMostRoundEdges = 512, kMostRoundSteps = 8 * kMostRoundEdges;
@@ -174,7 +176,8 @@ private:
         if (!accepts(Snap::midpoint) && !accepts(Snap::edge)) return;
         for (const Run& run : straight_runs(points, rounding_of(points)))
             if (!is_round[run.first] || !is_round[run.last - 1])
-                add_straight_edge(points[run.first], points[run.last]);
+                add_straight_edge(points[run.first], points[run.last],
+                                  ends_at(points, run, false) && ends_at(points, run, true));
     }
 
     bool is_any_near(std::span<const unsigned> chain) const {
@@ -258,10 +261,32 @@ private:
         return is_round;
     }
 
-    void add_straight_edge(const glm::dvec3& a, const glm::dvec3& b) {
+    /// Returns true if a straight run of a chain ends for all to see: at the chain's end, or if the chain
+    /// turns within a quarter of the run's length behind it. The pieces of what is not quite straight do not
+    /// end so, nor those of a curve.
+    bool ends_at(const std::vector<glm::dvec3>& chain, const Run& run, bool forwards) const {
+        constexpr double kTurn = 10 * std::numbers::pi / 180;
+        const std::size_t count = chain.size() - 1;  // of edges
+        const bool is_closed = chain.front() == chain.back();
+        const glm::dvec3 along = around_.relative(chain[run.last]) - around_.relative(chain[run.first]);
+        double behind = 0;
+        for (std::size_t i = 0; i < count && behind <= glm::length(along) / 4; ++i) {
+            const std::size_t edge = forwards ? run.last + i : run.first + count - 1 - i;
+            if (!is_closed && (forwards ? edge >= count : edge < count)) return true;
+            const glm::dvec3 next =
+                around_.relative(chain[edge % count + 1]) - around_.relative(chain[edge % count]);
+            if (std::atan2(glm::length(glm::cross(along, next)), glm::dot(along, next)) > kTurn) return true;
+            behind += glm::length(next);
+        }
+        return false;
+    }
+
+    /// `has_middle`: its ends can be seen.
+    void add_straight_edge(const glm::dvec3& a, const glm::dvec3& b, bool has_middle) {
         const glm::dvec3 middle = a + (b - a) * 0.5, seen_middle = around_.relative(middle);
         const double length = safe_length(around_.relative(b) - around_.relative(a));
-        if (accepts(Snap::midpoint) && length > coarse_length() && around_.is_near(seen_middle))
+        const bool counts = !to_.empty() || (has_middle && length > coarse_length());
+        if (accepts(Snap::midpoint) && counts && around_.is_near(seen_middle))
             add(Rank::midpoint, Snap::midpoint, seen_middle, {middle});
         const glm::dvec3 point = closest(a, b), seen = around_.relative(point);
         if (accepts(Snap::edge) && around_.is_near(seen)) add(Rank::edge, Snap::edge, seen, {point, a, b});
@@ -313,10 +338,23 @@ private:
         const glm::dvec3& normal = mesh_.normal(hit_triangle);
         const auto is_coplanar = [&](unsigned half_edge) {
             const glm::dvec3& other = mesh_.normal(mesh_.twin(half_edge) / 3);
+            const double rounded =
+                rounding_of_normal(hit_triangle) + rounding_of_normal(mesh_.twin(half_edge) / 3);
             return mesh_.agrees_with_twin(half_edge) && glm::dot(normal, other) > 0 &&
-                   sine(normal, other) <= kCoplanar;
+                   sine(normal, other) <= std::min(kCoplanar + rounded, kMostRounded);
         };
         return region(hit_triangle, is_coplanar, kMostCoplanar);
+    }
+    /// By how much positions that are floats turn the normal of a triangle, in radians: slivers by much.
+    double rounding_of_normal(unsigned triangle) const {
+        const glm::uvec3& t = mesh_.triangles()[triangle];
+        const std::vector<glm::dvec3> corners{mesh_.positions()[t.x], mesh_.positions()[t.y],
+                                              mesh_.positions()[t.z]};
+        const glm::dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0];
+        const double longest =
+            std::max({glm::length(ab), glm::length(ac), glm::distance(corners[1], corners[2])});
+        const double height = glm::length(glm::cross(ab, ac)) / longest;
+        return height > 0 ? rounding_of(corners) / height : kMostRounded;
     }
     bool is_large(unsigned triangle) const {
         const glm::uvec3& t = mesh_.triangles()[triangle];

@@ -31,7 +31,8 @@ struct Snapped {
 };
 
 /// Returns the best feature of the part that was hit, within the ray's cone and 4 of its radii from the hit.
-/// The first of these kinds, and of one kind the nearest to the ray: corners; midpoints of straight edges;
+/// The first of these kinds, and of one kind the nearest to the ray: corners; midpoints of straight edges that
+/// do not go on with a small turn;
 /// centers of circles, whose rim is near; loops; straight edges; vertices of a coarse mesh, whose edges are
 /// longer than 4 radii; a plane, if the triangle is that large or lies in the plane of a neighbour; the hit
 /// point. A circle is what fit_circle() accepts: a chain of feature edges; a loop of at most 512 edges around

@@ -133,6 +133,33 @@ TEST_CASE("pieces of a curve that is no circle have no midpoints") {
     CHECK(near(asked->feature.points[0], {(ellipse[8] + ellipse[9]) * 0.5, 0}));
 }
 
+TEST_CASE("pieces of an edge that is not quite straight have no midpoints") {
+    Outline square = square_outline(2, 8);
+    square[0].x += 1e-3;  // the middle of a side
+    const glm::dvec2 middle = (square[0] + square[1]) * 0.499;
+    check_points({}, part(prism(square, 1)), {middle, 0}, Snap::edge, {});
+    const glm::dvec2 of_whole = (square[3] + square[5]) * 0.499;
+    check_points({}, part(prism(square, 1)), {of_whole, 0}, Snap::midpoint, {{-2, 0, 0}});
+}
+
+TEST_CASE("a sliver of floats takes the plane of the triangle beside it") {
+    const glm::dmat4 turn = turned_by(25, glm::normalize(glm::dvec3(1, 2, 3)));
+    scene::Geometry sheet;
+    for (const glm::dvec3& p : {glm::dvec3(-1, 0, 0), {1, 0, 0}, {0, 2, 0}, {0.1, -1e-5, 0}})
+        sheet.positions.emplace_back(glm::vec3(turn * glm::dvec4(p, 1)));
+    sheet.triangles = {{0, 1, 2}, {1, 0, 3}};
+    const glm::dvec3 normal(turn * glm::dvec4(0, 0, 1, 0)), at(turn * glm::dvec4(0.1, -3e-6, 0, 1));
+    const auto placed = scene_of({{1, with_bounds(sheet), {}}});
+    measurement::MeshEdgesMemo memo;
+    const mesh::Ray ray{at + 5.0 * normal, -normal};
+    const auto hit = mesh::pick(*placed, ray);
+    REQUIRE(hit);
+    const auto found = measurement::snap(*placed, *hit, ray, {.radius = 1e-3, .to = {Snap::plane}}, memo);
+    REQUIRE(found);
+    const std::vector<glm::dvec3>& p = found->feature.points;
+    CHECK(glm::length(glm::cross(glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0])), normal)) < 1e-6);
+}
+
 TEST_CASE("what is a circle in the world counts, not in the part") {
     const double stretch = 1.5;
     Outline ellipse = circle_outline(1, 32);
