@@ -1,5 +1,6 @@
 #include "measure/rows.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>
@@ -123,8 +124,8 @@ std::string read_file(const std::filesystem::path& path) {
 
 bool is_whole(const Row& row) {
     if (row.chart == "picking") return row.wrong.has_value();
-    const bool times_alone = row.chart == "table-7-1" || row.chart == "pixels" || row.chart == "triangles";
-    return times_alone || row.error.has_value();
+    constexpr std::array<std::string_view, 4> kTimesAlone{"table-7-1", "sections", "pixels", "triangles"};
+    return std::ranges::count(kTimesAlone, row.chart) > 0 || row.error.has_value();
 }
 
 std::string line_of(const std::vector<std::string>& fields) {

@@ -1130,7 +1130,7 @@ export type StateDocument = {
     components?: Array<number>;
     /** To be drawn, in the world; empty where a part is not shown. */
     line: Array<Array<number>>;
-    /** A sentence: why there is no value. */
+    /** Why there is no value, if there is none. */
     problem?: string;
     /** In the scene's unit, or degrees. */
     value?: number;
