@@ -18,6 +18,7 @@ constexpr double kLongestStep = 60 * std::numbers::pi / 180;
 constexpr double kStraightness = 1e-6;
 /// In squares of the points' extent: what spans less has no plane.
 constexpr double kLeastArea = 1e-6;
+constexpr double kClearlyOff = 1e-3;  // of the radius: ten times what noise may do to a circle
 
 /// Points about their mean, divided by their extent.
 struct Scaled {
@@ -144,6 +145,26 @@ Run grown(std::span<const glm::dvec3> chain, Run run) {
     return run;
 }
 
+double distance_from(const CirclePoints& circle, const glm::dvec3& point) {
+    const glm::dvec3 x = circle[1] - circle[0], y = circle[2] - circle[0], p = point - circle[0];
+    const double radius = glm::length(x), height = glm::dot(glm::cross(x, y), p) / (radius * radius);
+    const double across = glm::length(glm::dvec2(glm::dot(x, p), glm::dot(y, p))) / radius;
+    return glm::length(glm::dvec2(height, across - radius));
+}
+
+/// Returns true if the chain leaves the circle at both ends of an arc, and does not just stray from it: a
+/// part of a circle with noise would be an arc of a wrong radius.
+bool ends_clearly(std::span<const glm::dvec3> chain, const Run& arc) {
+    const auto circle = fit_circle(chain.subspan(arc.first, arc.last - arc.first + 1));
+    if (!circle) return false;
+    const double least = kClearlyOff * glm::distance((*circle)[0], (*circle)[1]);
+    const bool closed = chain.front() == chain.back();
+    const auto is_off = [&](std::size_t at) { return distance_from(*circle, chain[at]) > least; };
+    const bool has_before = closed || arc.first > 0, has_after = closed || arc.last + 1 < chain.size();
+    return (!has_before || is_off(arc.first > 0 ? arc.first - 1 : chain.size() - 2)) &&
+           (!has_after || is_off(arc.last + 1 < chain.size() ? arc.last + 1 : 1));
+}
+
 }  // namespace
 
 std::optional<CirclePoints> fit_circle(std::span<const glm::dvec3> chain) {
@@ -161,6 +182,7 @@ std::optional<Run> arc_around_edge(std::span<const glm::dvec3> chain, std::size_
         const bool is_longer = !longest || run.last - run.first > longest->last - longest->first;
         if (is_longer && fit_circle(chain.subspan(run.first, run.last - run.first + 1))) longest = run;
     }
+    if (!longest || !ends_clearly(chain, *longest)) return {};
     return longest;
 }
 

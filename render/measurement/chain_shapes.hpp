@@ -24,7 +24,7 @@ struct Run {
 };
 
 /// Returns the longest run of points around the edge from `edge` to the next point that fit_circle() takes
-/// for a circle. None if there is none.
+/// for a circle, and that the chain leaves clearly at both ends. None if there is none.
 std::optional<Run> arc_around_edge(std::span<const glm::dvec3> chain, std::size_t edge);
 
 /// The parts of a chain that are straight, each as long as can be: within 1e-6 of their length, and

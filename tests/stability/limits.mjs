@@ -66,14 +66,14 @@ export const ROWS = [
     studies: ['noisy-corners', 'noisy-edges', 'noisy-circles', 'noisy-planes', 'noisy-values', 'noisy-mistakes'],
     holds: (corners, edges, circles, planes, values) =>
       `noise of the vertices up to so much of the length of an edge: corners ${power(corners.to)}, straight edges of several pieces ${power(edges.to)}, circles ${power(circles.to)}, planes of fine meshes ${power(planes.to)}; what is found is off by ${short(values.worst)} times the noise at most`,
-    beyond: 'pieces of edges, their midpoints, and points; from 10⁻² on planes that lean by more than a degree',
+    beyond: 'pieces of edges, and points; from 10⁻² on planes that lean by more than a degree',
   },
   {
     what: 'circles and planes of tessellated parts',
     studies: ['coarse-circles', 'coarse-discs', 'short-arcs', 'sliver-planes', 'rounded-slivers'],
     holds: (circles, discs, arcs, slivers, rounded) =>
       `circles of ${short(Math.round(360 / circles.to))} edges on solids and ${short(Math.round(360 / discs.to))} on sheets, and arcs of ${short(Math.round(360 / arcs.to))} degrees, in floats: radius within ${power(arcs.bound)} of itself; a face's sliver ${power(slivers.to)} times as long as wide: normal within ${power(slivers.bound)}; rounded to floats, ${power(rounded.to)} times and ${power(rounded.bound)}`,
-    beyond: 'polygons have corners and edges; a thinner sliver in floats has a plane of its own, or none',
+    beyond: 'polygons have corners and edges; a thinner sliver in floats has no plane',
   },
   {
     what: 'minified textures',

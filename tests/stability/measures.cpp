@@ -387,8 +387,7 @@ Study edges_of_noisy_meshes(const Laboratory& laboratory) {
     study.method.title = "folds in a row, within the rounding of floats";
     study.explanation =
         "An edge of several pieces falls apart in more noise than the rounding of floats: its pieces are "
-        "picked, "
-        "and their midpoints. An edge of one piece is found in any noise.";
+        "picked, without midpoints. An edge of one piece is found in any noise.";
     return study;
 }
 
@@ -396,13 +395,13 @@ Study circles_of_noisy_meshes(const Laboratory& laboratory) {
     Study study = noisy(laboratory, "noisy-circles", "Picking circles of noisy meshes", Aim::rim);
     study.limit = 3e-4;
     study.method.title = "least squares, within 1e-4 of the radius";
-    study.explanation = "In more noise it is a polygon: pieces of the rim are picked, and their midpoints.";
+    study.explanation = "In more noise it is a polygon: pieces of its rim are picked.";
     return study;
 }
 
 Study planes_of_noisy_meshes(const Laboratory& laboratory) {
     Study study = noisy(laboratory, "noisy-planes", "Picking planes of noisy meshes", Aim::top);
-    study.limit = 1e-6;
+    study.limit = 3e-6;
     study.method.title = "large triangles, or two in one plane";
     study.explanation = "In more noise the plane of a large triangle is picked, and of a fine mesh a point.";
     return study;
@@ -412,11 +411,11 @@ Study mistakes_on_noisy_meshes(const Laboratory& laboratory) {
     Study study{"noisy-mistakes", "Picks of noisy meshes that find what is not there",
                 "deviation of the vertices / length of an edge", "picks that find another thing, in percent"};
     study.bound = 0.5;
-    study.limit = 1e-5;
+    study.limit = 3e-4;
     study.method.title = "first kind that is found in the cone";
     study.explanation =
-        "First the midpoints of the pieces of an edge are found, from 3e-4 on those of the pieces of a rim, "
-        "from 0.01 on planes that lean by more than a degree, and at 0.1 folds in a face. Points, vertices "
+        "From 3e-4 on midpoints of pieces of a coarse rim are found, from 0.01 on planes that lean by more "
+        "than a degree, and at 0.1 folds in a face. Points, vertices "
         "and pieces of edges are of the mesh, and no mistakes.";
     study.cost = "None.";
     for (const double noise : laboratory.chosen(kNoises)) {
@@ -447,9 +446,9 @@ Study values_of_noisy_meshes(const Laboratory& laboratory) {
 
 Study circles_of_few_edges(const Laboratory& laboratory) {
     Study study = of_few_edges(laboratory, "coarse-circles", "Circles of ever fewer edges on a solid", true);
-    study.limit = 21;
+    study.limit = 45;
     study.explanation =
-        "With 17 edges or fewer the sides meet in folds, whose ends are corners: it is a prism.";
+        "With 8 edges or fewer the rim turns by more than 40 degrees, in corners: it is a prism.";
     return study;
 }
 
@@ -493,10 +492,10 @@ Study planes_of_slivers(const Laboratory& laboratory) {
 Study planes_of_rounded_slivers(const Laboratory& laboratory) {
     Study study =
         of_slivers(laboratory, "rounded-slivers", "Picking the plane of a face with a rounded sliver", true);
-    study.bound = 1e-3;
-    study.limit = 1e5;
+    study.bound = 1e-6;
+    study.limit = 1e7;
     study.explanation =
-        "Rounding turns a sliver out of the plane of its neighbours, so that it counts alone. A sliver "
+        "A sliver counts with its neighbours as far as rounding may have turned it out of their plane. One "
         "thinner than a millionth of its length has no plane.";
     return study;
 }
