@@ -667,8 +667,8 @@ void describe(V& v, const MeasuredState*) {
 template <class V>
 void describe(V& v, const UnitState*) {
     v.writable("metres", &UnitState::metres, Number{1e-12, 1e12},
-               "Of one unit of the scene; as the file says, or 0.001.");
-    v.writable("shown", &UnitState::shown, word("mm", "cm", "m", "in"), "In what pages show lengths.");
+               "Of one unit of the scene; from the file, or 0.001.");
+    v.writable("shown", &UnitState::shown, word("mm", "cm", "m", "in"), "The unit in which pages show lengths.");
 }
 
 template <class V>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes a table of the gap between two parts as CSV: where it was measured, and how wide it is there.
 
-The parts are told by the ends of their paths in the scene's tree. The script looks at the scene from one side,
+The ends of their paths in the scene's tree name the parts. The script looks at the scene from one side,
 goes along lines across the picture, and measures wherever the second part follows the first. A width is the
 distance of the second part's edge from the line along the first one's, in the unit that the room shows.
 

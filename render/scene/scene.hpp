@@ -191,7 +191,7 @@ struct SceneParts {
         std::size_t line = 0;  ///< of the file, for errors; 0 where it has none
     };
     std::string name;
-    std::optional<double> unit = {};  ///< metres per unit; none where the file does not say
+    std::optional<double> unit = {};  ///< metres per unit; none where the file names none
     std::vector<Texture> textures;
     std::vector<Material> materials;
     std::vector<Geometry> geometries;
@@ -218,7 +218,7 @@ public:
     static tl::expected<Scene, BuildError> build(SceneParts parts);
 
     const std::string& name() const { return name_; }
-    /// Metres per unit; none where the file does not say.
+    /// Metres per unit; none where the file names none.
     std::optional<double> unit() const { return unit_; }
     const std::vector<Texture>& textures() const { return textures_; }
     const std::vector<Material>& materials() const { return materials_; }

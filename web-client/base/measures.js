@@ -58,7 +58,7 @@ const isDirected = ({ snap }) => DIRECTED.includes(snap);
  * @param {Kind} kind
  * @param {Feature[]} picks so far
  * @param {{isLoop?: boolean, isByPoints?: boolean}} [options] whether the length of an edge is that of all its loop, and
- *   whether a circle is told by three of its points
+ *   whether three of its points define a circle
  * @returns {?{ask: string, to?: Snap[]}}
  */
 export function nextPick(kind, picks, { isLoop = false, isByPoints = false } = {}) {
@@ -97,7 +97,7 @@ const METRES = { mm: 0.001, cm: 0.01, m: 1, in: 0.0254 };
 /** The units in which lengths are shown. */
 export const UNITS = Object.keys(METRES);
 
-/** Metres to which a length is told: [below, to]. */
+/** Metres to which a length is shown: [below, to]. */
 const EXACT = [[1e-5, 1e-7], [0.1, 1e-5], [1, 1e-4], [100, 1e-3], [Infinity, 1e-2]];
 
 /**
@@ -105,12 +105,12 @@ const EXACT = [[1e-5, 1e-7], [0.1, 1e-5], [1, 1e-4], [100, 1e-3], [Infinity, 1e-
  *
  * @param {number} value
  * @param {Unit} unit
- * @param {number} [whole] of which it is a part, and told as exactly
+ * @param {number} [whole] the length that it is a part of, with as many digits
  */
 export function lengthIn(value, { metres, shown }, whole = value) {
   const one = METRES[shown];
   const size = Math.abs(whole * metres);
-  // Of zero there is nothing more to be told.
+  // Zero has no more digits.
   const [, exact] = size === 0 ? [0, 1] : /** @type {number[]} */ (EXACT.find(([below]) => size < below));
   const digits = Math.max(Math.floor(Math.log10(one / exact) + 1e-9), 0);
   const rounded = Math.round(value * metres / one * 10 ** digits);
@@ -130,7 +130,7 @@ export function valueWords({ kind, value }, unit) {
 }
 
 /**
- * How far the second point of a distance lies from the first along each axis, in words; null where that is not told.
+ * How far the second point of a distance lies from the first along each axis, in words; null where that is unknown.
  *
  * @param {Measure} measure
  * @param {Unit} unit

@@ -33,7 +33,7 @@ function toolButtons({ commands, store, report, snapping, makeRoom }) {
   /** Asked for, and not yet in the state. @type {Set<string>} */
   const asked = new Set();
   let isLoop = false;
-  /** Asks anew what the tool that is on asks for. */
+  /** Asks again what the tool that is on asks for. */
   let askAgain = () => {};
   /** @param {Kind} kind @param {Snapped[]} taken */
   const add = async (kind, taken) => {

@@ -22,7 +22,7 @@ import { onChange } from '../base/store.js';
  *
  * @typedef {(text: string, signal: AbortSignal) => Promise<?{x: number, y: number, frame?: number}>} NextTap
  *
- * Picks on the picture snap to what is there, from `begin` to `end`. That is told the present session, which may come
+ * Picks on the picture snap to what is there, from `begin` to `end`, which calls the session's `ended`; that may come
  * by itself, too. `ask` says what is wanted.
  *
  * @typedef {{

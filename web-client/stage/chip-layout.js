@@ -2,7 +2,7 @@
  * @import { Area } from '../navigation/plane-drags.js'
  * @import { Place } from '../navigation/drags.js'
  *
- * A chip that is to lie at a place, as large as it is; `isBeside`: it would hide what it tells of.
+ * A chip that is to lie at a place, as large as it is; `isBeside`: it would hide its measure.
  *
  * @typedef {{name: string, at: Place, width: number, height: number, isBeside?: boolean}} Wanted
  *

@@ -9,7 +9,7 @@ import { dotData, pathData, showSign } from './snap-signs.js';
  * @import { Place } from '../navigation/drags.js'
  * @import { Area } from '../navigation/plane-drags.js'
  *
- * Who is told what each pick has snapped to, undefined where that is nothing, and when there are no more.
+ * Gets what each pick has snapped to, undefined where that is nothing, and a call when there are no more.
  *
  * @typedef {{take: (snapped?: Snapped) => void, ended: () => void}} Session
  *
@@ -68,7 +68,7 @@ export class Snapper {
     this.#latest = new Latest(({ at, ...place }) => page.pick(place), () => this.look());
   }
 
-  /** @param {Session} session to be told with ask() at once */
+  /** @param {Session} session ask() must follow at once */
   begin(session) {
     this.end();
     this.#session = session;
