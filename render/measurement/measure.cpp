@@ -15,7 +15,8 @@ namespace vrut::measurement {
 
 namespace {
 
-constexpr double kParallelTolerance = 1e-6;  // radians
+/// In radians, 0.01 degrees: short edges of floats are off by more than rounding of doubles.
+constexpr double kParallelTolerance = 0.01 * std::numbers::pi / 180;
 constexpr double kCircleTolerance = 1e-6;    // of the radius, and of a right angle's cosine
 constexpr double kLeastSine = 1e-12;
 constexpr double kDegrees = 180 / std::numbers::pi;
@@ -58,10 +59,8 @@ double angle_between(const Direction& a, const Direction& b) {
 }
 
 std::string degrees_text(double radians) {
-    const double degrees = radians * kDegrees;
-    if (degrees < 0.001) return "less than 0.001 degrees";
     std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g degrees", degrees);
+    std::snprintf(text.data(), text.size(), "%.3g degrees", radians * kDegrees);
     return text.data();
 }
 
