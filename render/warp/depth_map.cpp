@@ -80,7 +80,7 @@ int predicted(std::span<const std::uint8_t> values, int columns, int column, int
 
 /// The difference of two values modulo 256, small ones of either sign as small ones without.
 char difference(int value, int predicted) {
-    const int wrapped = static_cast<std::int8_t>(static_cast<std::uint8_t>(value - predicted));
+    const int modulo = (value - predicted) & 0xff, wrapped = modulo > 127 ? modulo - 256 : modulo;
     return static_cast<char>(wrapped < 0 ? -2 * wrapped - 1 : 2 * wrapped);
 }
 std::uint8_t summed(int predicted, char difference) {
