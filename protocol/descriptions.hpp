@@ -668,7 +668,8 @@ template <class V>
 void describe(V& v, const UnitState*) {
     v.writable("metres", &UnitState::metres, Number{1e-12, 1e12},
                "Of one unit of the scene; from the file, or 0.001.");
-    v.writable("shown", &UnitState::shown, word("mm", "cm", "m", "in"), "The unit in which pages show lengths.");
+    v.writable("shown", &UnitState::shown, word("mm", "cm", "m", "in"),
+               "The unit in which pages show lengths.");
 }
 
 template <class V>
