@@ -31,16 +31,16 @@ struct Snapped {
 };
 
 /// Returns the best feature of the part that was hit, within the ray's cone and 4 of its radii from the hit.
-/// The first of these kinds, and of one kind the nearest to the ray: corners; midpoints of straight edges whose
-/// ends are corners or turns; centers of circles, whose rim is near; loops; straight edges; vertices of a
-/// coarse mesh, whose edges are longer than 4 radii; a plane, if the triangle is that large or lies in the
-/// plane of a neighbour; the hit point. A circle is what fit_circle() accepts: a chain of feature edges; a loop of at most 512 edges around
-/// a smooth face that nowhere turns by more than 40 degrees, as of a hole of 9 or more segments; or the part
-/// of a chain around its edge that is nearest to the ray. Vertices of such a loop are no corners, and no edge
-/// of a circle is straight. If `to` names kinds, they are not judged: each vertex of the mesh, edge and plane
-/// counts. What lies behind the surface of the part is not found. `hit` is the ray's, or that of a ray beside
-/// it in the cone, which finds an edge at whose outer side the ray passes. None if nothing is there, or if
-/// the part is flattened.
+/// The first of these kinds, and of one kind the nearest to the ray: corners; midpoints of straight edges
+/// whose ends are corners or turns; centers of circles, whose rim is near; loops; straight edges; vertices of
+/// a coarse mesh, whose edges are longer than 4 radii; a plane, if the triangle is that large or lies in the
+/// plane of a neighbour; the hit point. A circle is what fit_circle() accepts: a chain of feature edges; a
+/// loop of at most 512 edges around a smooth face that nowhere turns by more than 40 degrees, as of a hole of
+/// 9 or more segments; or the part of a chain around its edge that is nearest to the ray. Vertices of such a
+/// loop are no corners, and no edge of a circle is straight. If `to` names kinds, they are not judged: each
+/// vertex of the mesh, edge and plane counts. What lies behind the surface of the part is not found. `hit` is
+/// the ray's, or that of a ray beside it in the cone, which finds an edge at whose outer side the ray passes.
+/// None if nothing is there, or if the part is flattened.
 std::optional<Snapped> snap(const scene::PlacedScene& placed, const mesh::Hit& hit, const mesh::Ray& ray,
                             const SnapOptions& options, MeshEdgesMemo& memo);
 
