@@ -1278,9 +1278,9 @@ export type StateDocument = {
   }>;
   /** Of lengths. */
   unit: {
-    /** Of one unit of the scene; as the file says, or 0.001. */
+    /** Of one unit of the scene; from the file, or 0.001. */
     metres: number;
-    /** In what pages show lengths. */
+    /** The unit in which pages show lengths. */
     shown: 'mm' | 'cm' | 'm' | 'in';
   };
   /** Saved cameras, by name. */
