@@ -31,6 +31,13 @@ Control checked(Control control) {
     return control;
 }
 
+/// Where it points is told as a whole.
+Point checked(Point point) {
+    if (point.x && !point.y) throw BadJson{error_code::bad_message, "member 'y' is missing"};
+    if (!point.x && (point.y || point.frame)) throw BadJson{error_code::bad_message, "member 'x' is missing"};
+    return point;
+}
+
 template <class Message>
 Message checked(Message message) {
     return message;
@@ -106,6 +113,7 @@ const char* name_of(NavigationState::Style style) {
 std::string encode(const Welcome& message) { return encode_as("welcome", message); }
 std::string encode(const Ok& message) { return encode_as("ok", message); }
 std::string encode(const Picked& message) { return encode_as("picked", message); }
+std::string encode(const Pointed& message) { return encode_as("pointed", message); }
 std::string encode(const Flown& message) { return encode_as("flown", message); }
 std::string encode(const TreePage& message) { return encode_as("tree", message); }
 std::string encode(const SceneList& message) { return encode_as("scenes", message); }

@@ -21,6 +21,7 @@ tl::expected<Fly, Error> parse_flight(std::string_view text);
 std::string encode(const Welcome& message);
 std::string encode(const Ok& message);
 std::string encode(const Picked& message);
+std::string encode(const Pointed& message);
 std::string encode(const Flown& message);
 std::string encode(const TreePage& message);
 std::string encode(const SceneList& message);

@@ -207,6 +207,16 @@ void describe(V& v, const Pick*) {
 }
 
 template <class V>
+void describe(V& v, const Point*) {
+    v.optional("x", &Point::x, kCoordinate,
+               "CSS pixels from the view's left edge. Without `y` it must be missing.");
+    v.optional("y", &Point::y, kCoordinate,
+               "CSS pixels from the view's top edge. Without `x` it must be missing.");
+    v.optional("frame", &Point::frame, kId,
+               "The frame whose camera counts, as of `pick`; without it the present camera.");
+}
+
+template <class V>
 void describe(V& v, const CameraOverlay*) {
     v.optional("node", &CameraOverlay::node, kId, "A camera node, whose pose is laid over first.");
     v.optional("eye", &CameraOverlay::eye, kPosition, "Where the camera stands.");
@@ -368,6 +378,16 @@ void describe(V& v, const Picked*) {
         "local", &Picked::local, Vector<glm::dvec3>{kAny.min, kAny.max},
         "The point in the node's own space, for a marker that moves with it; none of a flattened node.");
     v.required("snapped", &Picked::snapped, Object<Snapped>{}, "What `snap` has found, if anything.");
+}
+
+template <class V>
+void describe(V& v, const Pointed*) {
+    v.required("client", &Pointed::client, kName, "Who points.");
+    v.required("name", &Pointed::name, kName, "As others see that client, where it has a name.");
+    v.required("point", &Pointed::point, Vector<glm::dvec3>{kAny.min, kAny.max},
+               "In the world; missing: that client points at nothing any more.");
+    v.required("normal", &Pointed::normal, Vector<glm::dvec3>{-1.001, 1.001},
+               "Of the face, unit, towards who points; with `point`.");
 }
 
 template <class V>
@@ -712,6 +732,12 @@ void describe(V& v, const QualityState*) {
 }
 
 template <class V>
+void describe(V& v, const PointingState*) {
+    v.writable("watchers", &PointingState::watchers, Flag{},
+               "Clients of the roles `view` and `host` may point, too.");
+}
+
+template <class V>
 void describe(V& v, const ControlState::Asking*) {
     v.fixed("client", &ControlState::Asking::client, kName, "The client's id.");
     v.fixed("name", &ControlState::Asking::name, kName, "As in its `hello`.");
@@ -770,6 +796,7 @@ void describe(V& v, const State*) {
     v.writable("unit", &State::unit, Section<UnitState>{}, "Of lengths.");
     v.writable("quality", &State::quality, Section<QualityState>{},
                "How frames are drawn while things move.");
+    v.writable("pointing", &State::pointing, Section<PointingState>{}, "Who may point.");
     v.fixed("control", &State::control, Object<ControlState>{}, "Who holds control, and who asks.");
     v.fixed("clients", &State::clients, SharedTable<Table<ClientState>>{},
             "Who is connected, by the client's id.");

@@ -35,6 +35,7 @@ void add_client_messages(Json& defs) {
         add(defs, "clientMessage", "client" + capitalized(traits.type), std::move(schema));
     });
     defs["clientRecord"]["properties"]["name"]["pattern"] = "^[A-Za-z0-9_-]*$";
+    defs["clientPoint"]["dependentRequired"] = {{"x", {"y"}}, {"y", {"x"}}, {"frame", {"x", "y"}}};
 }
 
 template <class Message>
@@ -47,6 +48,7 @@ void add_server_messages(Json& defs) {
     add_server_message<Welcome>(defs, "welcome");
     add_server_message<Ok>(defs, "ok");
     add_server_message<Picked>(defs, "picked");
+    add_server_message<Pointed>(defs, "pointed");
     add_server_message<Flown>(defs, "flown");
     add_server_message<TreePage>(defs, "tree");
     add_server_message<SceneList>(defs, "scenes");

@@ -67,6 +67,7 @@ void for_each_client_type(Use use) {
     use(MessageTraits{"control",       control,          no,         true,  request}, Control{});
     use(MessageTraits{"share",         control,          no,         false, request}, Share{});
     use(MessageTraits{"shown",         host,             no,         true,  request}, Shown{});
+    use(MessageTraits{"point",         all,              no,         false, stream},  Point{});
     // clang-format on
 }
 

@@ -160,6 +160,13 @@ struct Pick {
     std::optional<SnapRequest> snap = {};
 };
 
+/// Shows everybody what lies under a point of the view, as a frame showed it; without `x` and `y` nothing any
+/// more.
+struct Point {
+    std::optional<double> x, y;         ///< CSS pixels; both or none
+    std::optional<std::int64_t> frame;  ///< none: the present view
+};
+
 /// Members of a camera, to be laid over another; `node` first.
 struct CameraOverlay {
     std::optional<std::int64_t> node;
@@ -230,7 +237,7 @@ struct Share {
 struct ClientMessage {
     std::optional<std::int64_t> id;
     std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Navigate, Fit, Swing, Patch, Pick, Snapshot,
-                 Fly, Tree, Open, Scenes, Record, Control, Shown, Share>
+                 Fly, Tree, Open, Scenes, Record, Control, Shown, Share, Point>
         payload;
     std::string text = {};  ///< as it came over the wire; empty where it did not
 };
@@ -290,6 +297,13 @@ struct Picked {
     std::optional<double> distance;                ///< from the eye
     std::optional<glm::dvec3> local;               ///< the point in the node's own space, where that has one
     std::optional<Snapped> snapped = {};           ///< also where nothing was hit, beside the point
+};
+
+/// What a client points at now.
+struct Pointed {
+    std::string client;
+    std::optional<std::string> name;          ///< as others see it
+    std::optional<glm::dvec3> point, normal;  ///< world, as Picked's; none: it points at nothing any more
 };
 
 struct Flown {

@@ -89,6 +89,10 @@ struct RoomHandled {
     std::string client;
     std::uint64_t sequence = 0;  ///< of its last message that was handled
 };
+/// The newest that is to be said of what a client points at.
+struct RoomPointed {
+    std::string client, text;
+};
 /// For the connections of clients.
 struct RoomOutput {
     std::string edge;           ///< all that this one has to know; empty: news for all
@@ -104,6 +108,7 @@ struct RoomOutput {
     std::optional<std::int64_t> present_frame;
     std::string stats, loading;  ///< texts of messages; empty: nothing new
     bool loads = false;
+    std::vector<RoomPointed> pointed;
 };
 /// Twice a second.
 struct RoomAlive {

@@ -85,6 +85,11 @@ void describe(V& v, const RoomHandled*) {
     v.required("sequence", &RoomHandled::sequence, kCount, "Of the last.");
 }
 template <class V>
+void describe(V& v, const RoomPointed*) {
+    v.required("client", &RoomPointed::client, kName, "Who points.");
+    v.required("text", &RoomPointed::text, kAnyText, "A message for all.");
+}
+template <class V>
 void describe(V& v, const RoomOutput*) {
     v.optional("edge", &RoomOutput::edge, kName, "All that this one has to know.");
     v.optional("state", &RoomOutput::state, kAnyText, "A `state` or a `patch`.");
@@ -103,6 +108,8 @@ void describe(V& v, const RoomOutput*) {
     v.optional("stats", &RoomOutput::stats, kAnyText, "A message for all.");
     v.optional("loading", &RoomOutput::loading, kAnyText, "A message for all.");
     v.optional("loads", &RoomOutput::loads, Flag{}, "Loading goes on.");
+    v.optional("pointed", &RoomOutput::pointed, List<Object<RoomPointed>>{{}, 0, kMostOfOne},
+               "Of each client the newest.");
 }
 template <class V>
 void describe(V& v, const RoomAlive*) {

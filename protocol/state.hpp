@@ -205,6 +205,11 @@ struct QualityState {
     bool operator==(const QualityState&) const = default;
 };
 
+struct PointingState {
+    bool watchers = true;  ///< who cannot hold control may point, too
+    bool operator==(const PointingState&) const = default;
+};
+
 struct ControlState {  // r
     /// A control client that asks the holder for control.
     struct Asking {
@@ -259,6 +264,7 @@ struct State {
     SharedMap<MeasuredState> measured;  // r: by the measure's name
     UnitState unit;
     QualityState quality;
+    PointingState pointing;
     ControlState control;
     SharedMap<ClientState> clients;  // r: the first kMaxListedClients
     std::optional<RecordingState> recording;

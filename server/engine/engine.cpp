@@ -271,9 +271,13 @@ void Engine::advance_room() {
     const base::Clock::time_point now = base::Clock::now();
     const auto deadline = room_->deadline();
     // Else what waits would count as later than it arrived.
-    if (!room_->moves() && !(deadline && *deadline <= time_of(now))) return;
-    last_change_ = now;
+    const bool moves = room_->moves();
+    if (!moves && !(deadline && *deadline <= time_of(now))) return;
+    const plan::View before = room_->visible();
+    const protocol::Resize size_before = room_->view_size();
     room_->advance(time_of(now));
+    if (moves || room_->moves() || room_->visible() != before || room_->view_size() != size_before)
+        last_change_ = now;
 }
 
 // --- events
@@ -471,6 +475,8 @@ void Engine::publish() {
         }
     if (const auto stats = stats_.take(now))
         output_.stats = std::make_shared<const std::string>(protocol::encode(*stats));
+    for (const protocol::Pointed& pointed : room_->take_pointed())
+        output_.pointed[pointed.client] = std::make_shared<const std::string>(protocol::encode(pointed));
     if (!output_.empty()) callbacks_.on_output(std::exchange(output_, {}));
 }
 

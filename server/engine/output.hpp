@@ -34,10 +34,12 @@ struct EngineOutput {
     std::optional<std::int64_t> present_frame;
     std::shared_ptr<const std::string> stats, loading;  ///< messages for all; null if there is nothing new
     bool loads = false;                                 ///< with `loading`: it goes on
+    /// Messages for all: the newest of what each client points at.
+    std::map<std::string, std::shared_ptr<const std::string>> pointed;
 
     bool empty() const {
         return !document && answers.empty() && failed_pictures.empty() && handled.empty() && !size &&
-               !present_frame && !stats && !loading;
+               !present_frame && !stats && !loading && pointed.empty();
     }
 };
 

@@ -325,6 +325,8 @@ std::optional<engine::EngineOutput> RemoteRoom::output_of(const protocol::RoomOu
     output.present_frame = said.present_frame;
     if (!said.stats.empty()) output.stats = std::make_shared<const std::string>(said.stats);
     take_loading(said, output);
+    for (const protocol::RoomPointed& pointed : said.pointed)
+        output.pointed[pointed.client] = std::make_shared<const std::string>(pointed.text);
     return output;
 }
 

@@ -142,9 +142,10 @@ std::optional<Packet> RoomOwner::output_packet(engine::EngineOutput output) {
         said.loading = loading_ = *output.loading;
         said.loads = loads_ = output.loads;
     }
+    for (const auto& [client, text] : output.pointed) said.pointed.push_back({client, *text});
     const bool is_empty = said.state.empty() && said.answers.empty() && said.failed_pictures.empty() &&
                           said.handled.empty() && !said.width && !said.present_frame && said.stats.empty() &&
-                          said.loading.empty();
+                          said.loading.empty() && said.pointed.empty();
     if (is_empty) return {};
     return packet_of(std::move(said));
 }

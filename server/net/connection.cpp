@@ -227,6 +227,9 @@ void Connection::forward(tl::expected<protocol::ClientMessage, protocol::Error> 
                                      role_ == protocol::Role::control};
     if (!received.message) received.unreadable = text;
     received.sequence = ++sequence_;
+    const bool points =
+        received.message && std::holds_alternative<protocol::Point>(received.message->payload);
+    if (!points) shown_sequence_ = sequence_;
     unhandled_bytes_ += received.bytes;
     unhandled_requests_ += received.is_request();
     room_->engine->push(std::move(received));
@@ -268,7 +271,7 @@ void Connection::join(const std::string& client, protocol::Role role, const prot
     ++registry_.metrics->clients[name_of(role)];
     observe::log_info("joined",
                       {{"client", client_}, {"role", name_of(role)}, {"name", hello.name}, {"peer", peer_}});
-    sequence_ = engine::kHelloSequence;
+    sequence_ = shown_sequence_ = engine::kHelloSequence;
     room_->engine->push(
         engine::ClientJoined{client_, role, hello.name, id.value_or(0), hello.resume, hello.token});
 

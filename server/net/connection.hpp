@@ -13,6 +13,7 @@
 #include "base/rate_limit.hpp"
 #include "net/flow_control.hpp"
 #include "net/http_request.hpp"
+#include "net/newest_of_each.hpp"
 #include "net/registry.hpp"
 #include "net/transport.hpp"
 
@@ -37,6 +38,8 @@ public:
 
     // What the engine says.
     void answer(room::Answer answer);
+    /// The newest of what a client points at, for this one.
+    void pointed(const std::string& client, Text text) { points_.put(client, std::move(text)); }
     void handled(const engine::EngineOutput::Handled& handled);
     /// The room's newest frame has changed; `before` is the number of the previous newest frame, 0 if none.
     void newest_changed(std::int64_t before);
@@ -81,6 +84,7 @@ private:
     std::size_t bytes_of(const engine::EncodedPicture& picture) const;
     void send_update(base::Clock::time_point now);
     void send_document();
+    void send_point(base::Clock::time_point now);
     void send_answer();
     void send_text(Text text);
     void send_ping(base::Clock::time_point now);
@@ -127,6 +131,8 @@ private:
     std::int64_t handled_ = 0;      // the highest message id that a picture showed it
     std::deque<std::shared_ptr<const engine::EncodedPicture>> snapshots_;
     Text stats_, loading_;  // that it last got
+    NewestOfEach points_;   // by the client that points
+    bool points_turn_ = false;
 
     base::Clock::time_point had_broadcasts_ = base::Clock::now();  // stats and loading: the newest
 
@@ -134,7 +140,8 @@ private:
     FlowControl flow_;
     engine::FramesWanted wanted_;         // as the engine knows it
     std::uint64_t sequence_ = 0;          // of its messages: the last that was handed to the engine,
-    std::uint64_t granted_at_ = 0;        // before the newest grant,
+    std::uint64_t shown_sequence_ = 0;    // of these the last whose doing frames may show,
+    std::uint64_t granted_at_ = 0;        // that one before the newest grant,
     std::uint64_t handled_sequence_ = 0;  // and that was handled
     std::map<std::int64_t, base::Clock::time_point> inputs_;  // newest that the last frames showed it
 

@@ -34,7 +34,7 @@ void Connection::on_grant(const protocol::FrameGrant& grant, std::optional<std::
     }
     if (!grant.shown) flow_.grant();
     ++registry_.metrics->frames_granted;
-    granted_at_ = sequence_;
+    granted_at_ = shown_sequence_;
     if (const auto input = inputs_.find(grant.shown.value_or(0)); input != inputs_.end()) {
         registry_.metrics->input_to_grant.observe(std::chrono::duration<double>(now - input->second).count());
         inputs_.erase(inputs_.begin(), std::next(input));
@@ -137,14 +137,17 @@ void Connection::pump() {
 bool Connection::has_updates() const {
     const bool has_joined = handled_sequence_ >= engine::kHelloSequence;
     return has_joined && room_->document.newest() &&
-           (document_ != room_->document.newest() || has_broadcasts());
+           (document_ != room_->document.newest() || has_broadcasts() || !points_.empty());
 }
 
 bool Connection::has_broadcasts() const { return loading_ != room_->loading || stats_ != room_->stats; }
 
-/// Of each only the newest counts: the document, how far loading is, and statistics. The document goes first,
-/// unless the others have waited for long.
+/// Of each only the newest counts: the document, what each client points at, how far loading is, and
+/// statistics. The document takes turns with points, and goes before the others, unless these have waited for
+/// long.
 void Connection::send_update(base::Clock::time_point now) {
+    const bool knows_newest = document_ == room_->document.newest();
+    if (document_ && !points_.empty() && (knows_newest || points_turn_)) return send_point(now);
     const bool waits = has_broadcasts() && now - had_broadcasts_ >= kLongestBroadcast;
     if (document_ != room_->document.newest() && !waits) return send_document();
     had_broadcasts_ = now;
@@ -155,6 +158,13 @@ void Connection::send_update(base::Clock::time_point now) {
             flow_.sent_update((*sent)->size(), now);
             return send_text(*sent);
         }
+}
+
+void Connection::send_point(base::Clock::time_point now) {
+    points_turn_ = false;
+    Text text = points_.take();
+    flow_.sent_update(text->size(), now);
+    send_text(std::move(text));
 }
 
 void Connection::send_answer() {
@@ -169,6 +179,7 @@ void Connection::send_answer() {
 void Connection::send_document() {
     Text update = room_->document.update_from(document_.get(), *registry_.metrics);
     document_ = room_->document.newest();
+    points_turn_ = true;
     flow_.sent_update(update->size(), base::Clock::now());
     send_text(std::move(update));
 }

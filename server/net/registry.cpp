@@ -63,6 +63,8 @@ void ServedRoom::take(engine::EngineOutput output) {
     if (output.present_frame) present_frame = *output.present_frame;
     for (auto& answer : output.answers)
         if (const auto connection = find(answer.client)) connection->answer(std::move(answer));
+    for (const auto& [client, text] : output.pointed)
+        for (const auto& [name, connection] : clients) connection->pointed(client, text);
     for (const std::string& name : output.failed_pictures) pictures.give_up(name);
     for (const auto& [client, handled] : output.handled)
         if (const auto connection = find(client)) connection->handled(handled);

@@ -106,6 +106,7 @@ void Room::leave(const std::string& client, SessionTime at) {
     record(client, protocol::LogLine::Disconnected{});
     gestures_.lift(client, camera());
     clicks_.lift(client);
+    stop_pointing(client);
     if (steering_.holds(client)) {
         end_flight(false);
         recorded_holder_ = {client, true};  // by that line
@@ -215,6 +216,7 @@ void Room::advance(SessionTime at) {
         const Tap tap = *std::exchange(tap_, std::nullopt);
         begin_swing(tap.node, {}, protocol::Swing{}.ms, tap.due);
     }
+    tell_pointings();
     advance_swings();
     if (!flight_) return;
     if (!changing_.empty()) document();
@@ -239,6 +241,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     end_flight(false);
     swings_.clear();
     tap_.reset();
+    stop_all_pointings();
     record({}, protocol::LogLine::Opened{scene.name, scene.sha256, scene.changes, scene.up_axis});
     loaded_ = std::move(scene);
     scene_ = loaded_.placed;
@@ -249,6 +252,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     next.renderer.wireframe = state_.renderer.wireframe;
     next.renderer.show_selection = state_.renderer.show_selection;
     next.quality = state_.quality;
+    next.pointing = state_.pointing;
     next.control = state_.control;
     next.clients = state_.clients;
     next.recording = state_.recording;

@@ -28,6 +28,8 @@ namespace vrut::server::room {
 
 /// Picks may name one of so many frames.
 inline constexpr std::size_t kFramesRemembered = 64;
+/// What a client points at is told at most 30 times a second.
+inline constexpr SessionTime kPointsApart{33'334};
 
 /// What is to be sent to a client; it must know `revision` of the state first.
 struct Answer {
@@ -153,6 +155,8 @@ public:
     void reject(const std::string& client, const protocol::Error& error);
     std::vector<Answer> take_answers() { return std::exchange(answers_, {}); }
     std::vector<PictureOrder> take_orders() { return std::exchange(orders_, {}); }
+    /// What is to be sent to all clients: the newest of each that points, or has pointed.
+    std::vector<protocol::Pointed> take_pointed();
     /// The present view in another size, for whoever is no client.
     PictureOrder order(int width, int height);
 
@@ -164,6 +168,7 @@ private:
         std::string resume_key = {};     ///< as it gave it; empty: none
         std::uint64_t arrival = 0;       ///< rises
         bool knows_not_allowed = false;  ///< of input without an id
+        bool knows_no_pointing = false;  ///< likewise of pointing, while that is not allowed
     };
     /// The message in hand.
     struct Received {
@@ -216,6 +221,7 @@ private:
     void apply(const Received& received, const protocol::Control& control);
     void apply(const Received& received, const protocol::Shown& shown);
     void apply(const Received& received, const protocol::Share& share);
+    void apply(const Received& received, const protocol::Point& point);
 
     /// Does what a message does; whether it was accepted.
     template <class Apply>
@@ -268,6 +274,9 @@ private:
     Frame present() const { return {0, camera(), view_size_}; }
     /// Null where it is not remembered.
     const Frame* find_frame(std::int64_t number) const;
+    /// The one that a message names, or the present view; none where it is not remembered: the message is
+    /// rejected.
+    std::optional<Frame> frame_named(const Received& received, const std::optional<std::int64_t>& number);
     /// What of the present scene lies under a point of a frame's view, in CSS pixels.
     std::optional<mesh::Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
     std::optional<mesh::Hit> hit_along(const mesh::Ray& ray, bool through) const;
@@ -283,6 +292,24 @@ private:
         std::vector<scene::Id> ids;
     };
     Path path_of(scene::Index node) const;
+
+    // --- pointing others to things
+    struct Pointing {
+        std::optional<mesh::Ray> ray = {};  ///< along which it points; none: at nothing
+        bool waits = false;                 ///< others do not know it yet
+        bool is_shown = false;              ///< they know a point
+        std::optional<SessionTime> told = {};
+        /// When others may be told the next.
+        SessionTime due() const { return told ? *told + kPointsApart : SessionTime{0}; }
+    };
+    bool may_point(const std::string& client) const;
+    /// Looks at what is hit, where it is time for that.
+    void tell_pointings();
+    void stop_pointing(const std::string& client);
+    void stop_all_pointings();
+    /// Who may point has changed.
+    void use_pointing();
+    std::optional<SessionTime> pointing_deadline() const;
 
     // --- measures
     /// What a pick with `snap` finds; none where nothing is near.
@@ -355,6 +382,8 @@ private:
     std::int64_t changed_by_since_ = 0;
     std::vector<Answer> answers_;
     std::vector<PictureOrder> orders_;
+    std::map<std::string, protocol::Pointed> pointed_;  ///< to be sent, by client
+    std::map<std::string, Pointing> pointings_;         ///< by client
     std::map<std::string, Client> clients_;
     std::uint64_t arrivals_ = 0;
     Steering steering_;

@@ -99,13 +99,9 @@ void Room::fit_selection() {
 void Room::apply(const Received& received, const protocol::Pick& pick) {
     using Then = protocol::Pick::Then;
     if (pick.then && !(may_send(received, protocol::Senders::control) && may_steer(received))) return;
-    const Frame* named = pick.frame ? find_frame(*pick.frame) : nullptr;
-    if (pick.frame && !named)
-        return reject(received, code::unknown_frame,
-                      "frame " + std::to_string(*pick.frame) + " is not among the last " +
-                          std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
-    const Frame seen = named ? *named : present();
-    const std::optional<mesh::Hit> hit = hit_at(seen, pick.x, pick.y, pick.through);
+    const auto seen = frame_named(received, pick.frame);
+    if (!seen) return;
+    const std::optional<mesh::Hit> hit = hit_at(*seen, pick.x, pick.y, pick.through);
     if (pick.then) {
         steer(received);
         if (*pick.then == Then::select)
@@ -126,7 +122,7 @@ void Room::apply(const Received& received, const protocol::Pick& pick) {
             if (std::isfinite(local.x + local.y + local.z)) picked.local = local;
         }
     }
-    if (pick.snap) picked.snapped = snapped_at(seen, pick);
+    if (pick.snap) picked.snapped = snapped_at(*seen, pick);
     answer_with(received, picked);
 }
 
@@ -134,6 +130,16 @@ const Room::Frame* Room::find_frame(std::int64_t number) const {
     const auto found = std::find_if(frames_.begin(), frames_.end(),
                                     [&](const Frame& frame) { return frame.number == number; });
     return found == frames_.end() ? nullptr : &*found;
+}
+
+std::optional<Room::Frame> Room::frame_named(const Received& received,
+                                             const std::optional<std::int64_t>& number) {
+    if (!number) return present();
+    if (const Frame* named = find_frame(*number)) return *named;
+    reject(received, code::unknown_frame,
+           "frame " + std::to_string(*number) + " is not among the last " +
+               std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
+    return std::nullopt;
 }
 
 mesh::Ray Room::ray_at(const Frame& seen, double x, double y) const {

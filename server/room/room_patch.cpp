@@ -32,6 +32,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     const protocol::ViewState home = state_.views->at("home");
     if (camera_of(next->camera) != camera() || next->views->at("home") != home) at_home_ = false;
     const std::optional<scene::Id> selected = next->selection.node;
+    const bool pointing_changes = next->pointing != state_.pointing;
     steer(received);  // which may bring another size, and so another home
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
@@ -42,6 +43,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     gestures_.restart(camera());
     measure();
+    if (pointing_changes) use_pointing();
     answer(received);
 }
 

@@ -135,9 +135,13 @@ void Room::use_tap(const std::optional<mesh::Hit>& hit, SessionTime at) {
 }
 
 std::optional<SessionTime> Room::deadline() const {
-    const std::optional<SessionTime> steering = steering_.deadline();
-    if (!tap_) return steering;
-    return steering ? std::min(*steering, tap_->due) : tap_->due;
+    std::optional<SessionTime> first = steering_.deadline();
+    const auto add = [&](const std::optional<SessionTime>& due) {
+        if (due) first = std::min(first.value_or(*due), *due);
+    };
+    if (tap_) add(tap_->due);
+    add(pointing_deadline());
+    return first;
 }
 
 }  // namespace vrut::server::room

@@ -371,4 +371,13 @@ TEST_CASE("at rest nothing is drawn, read back or encoded, with and without gran
     for (int i = 0; i < 2; ++i) drag.client.send({{"type", "frame"}});
     std::this_thread::sleep_for(500ms);
     CHECK(counted() == drawn);
+    // Pointing causes no picture, either.
+    for (int i = 0; i < 20; ++i) {
+        drag.client.send({{"type", "point"}, {"x", 10 + i}, {"y", 10}});
+        std::this_thread::sleep_for(20ms);
+    }
+    drag.client.send({{"type", "tree"}, {"id", drag.client.next_id()}});
+    drag.client.wait_for("tree");
+    std::this_thread::sleep_for(100ms);
+    CHECK(counted() == drawn);
 }

@@ -211,6 +211,7 @@ std::vector<MessageType> message_types() {
         {"resize", "everybody", {{"type", "resize"}, {"width", 640}, {"height", 360}, {"pixelRatio", 1}}},
         {"frame", "everybody", {{"type", "frame"}}},
         {"pick", "everybody", at},
+        {"point", "everybody", {{"type", "point"}, {"x", 640}, {"y", 360}}},
         {"snapshot", "everybody", {{"type", "snapshot"}, {"width", 8}, {"height", 8}}},
         {"tree", "everybody", {{"type", "tree"}}},
         {"scenes", "everybody", {{"type", "scenes"}}},

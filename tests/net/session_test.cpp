@@ -369,3 +369,24 @@ TEST_CASE("changes that a slow client does not take wait as one, and do not fill
     MESSAGE(patches << " patches for " << kChanges << " changes");
     CHECK(patches < 100);
 }
+
+TEST_CASE("of what a client points at the newest waits for a slow client, and comes in the end") {
+    TestServer server;
+    TestClient driver(server.port()), slow(server.port(), {.receive_buffer = 4096});
+    driver.join();
+    slow.join("view");
+    driver.send(
+        {{"type", "patch"},
+         {"patch",
+          {{"camera", {{"eye", {0, 0, 10}}, {"focus", {0, 0, 0}}, {"up", {0, 1, 0}}, {"fov", 40}}}}}});
+    constexpr int kPoints = 30;
+    Json last;
+    for (int i = 1; i <= kPoints; ++i) {
+        driver.send({{"type", "point"}, {"x", 640 + i}, {"y", 360}});
+        last = driver.wait_for("pointed");
+    }
+    int points = 0;
+    for (Json newest; newest != last; ++points) newest = slow.wait_for("pointed");
+    MESSAGE(points << " of " << kPoints << " points");
+    CHECK(points < kPoints / 2);
+}

@@ -97,6 +97,12 @@ TEST_CASE("every member of every message is read") {
     CHECK(pick.through);
     CHECK(std::get<Pick>(decoded(R"({"type":"pick","x":1,"y":2})").payload).then == std::nullopt);
 
+    const auto point = std::get<Point>(decoded(R"({"type":"point","x":1.5,"y":2,"frame":7})").payload);
+    CHECK(point.x == 1.5);
+    CHECK(point.y == 2);
+    CHECK(point.frame == 7);
+    CHECK_FALSE(std::get<Point>(decoded(R"({"type":"point"})").payload).x);
+
     const auto navigate = std::get<Navigate>(
         decoded(R"({"type":"navigate","rotate":[10,-20],"pan":[0.5,0.25],"zoom":2})").payload);
     CHECK(navigate.rotate == glm::dvec2(10, -20));
@@ -420,6 +426,9 @@ TEST_CASE("messages to clients") {
         encode(Picked{4, 7, "Door", {{"Car", "Door"}}, {{1, 2, 3}}, {{0, 0, 1}}, 5, {{1, 2, 0}}}) ==
         R"({"distance":5.0,"id":4,"local":[1.0,2.0,0.0],"name":"Door","node":7,"normal":[0.0,0.0,1.0],"path":["Car","Door"],)"
         R"("point":[1.0,2.0,3.0],"type":"picked"})");
+    CHECK(encode(Pointed{"c2", "iPad", {{1, 2, 3}}, {{0, 0, 1}}}) ==
+          R"({"client":"c2","name":"iPad","normal":[0.0,0.0,1.0],"point":[1.0,2.0,3.0],"type":"pointed"})");
+    CHECK(encode(Pointed{"c2", {}, {}, {}}) == R"({"client":"c2","type":"pointed"})");
     const InputRules input{{100, 3, 0.5}, 1.5, 4, {{"vrut", {{"2", "pan"}}}}, {"f", "+"}, {"+"}};
     CHECK(
         encode(

@@ -68,6 +68,7 @@ TEST_CASE("what the server of a room says reads back the same") {
     output.width = output.height = 5;
     output.present_frame = 0;
     output.again = true;
+    output.pointed = {{"c2.e1", "{}"}};
     const RoomOutput read = room_round_trip(output);
     CHECK(read.state == output.state);
     CHECK(read.from == 3);
@@ -76,6 +77,9 @@ TEST_CASE("what the server of a room says reads back the same") {
     CHECK(read.width == 5);
     CHECK(read.present_frame == 0);
     CHECK(read.again);
+    REQUIRE(read.pointed.size() == 1);
+    CHECK(read.pointed[0].client == "c2.e1");
+    CHECK(read.pointed[0].text == "{}");
     CHECK(room_round_trip(RoomAdmitted{"e1", 4, Role::view, ""}).role == Role::view);
     CHECK_FALSE(room_round_trip(RoomAdmitted{"e1", 4, {}, "no"}).role);
     CHECK(room_round_trip(RoomAlive{kRelayVersion, {"e1"}, "GL", 4, 2, "not yet"}).edges.at(0) == "e1");

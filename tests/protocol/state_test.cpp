@@ -250,6 +250,7 @@ const std::vector<Member> kMembers = {
     {"/unit/shown", {"\"mm\"", "\"cm\"", "\"m\"", "\"in\""}, kNoText, {"\"\"", "\"km\""}},
     {"/quality/preference", {"0", "1"}, kNoNumber, {"-0.01", "1.01"}},
     {"/quality/latencyTargetMs", {"1", "10000"}, kNoNumber, {"0.9", "10001"}},
+    {"/pointing/watchers", {"true", "false"}, kNoFlag, {}},
 };
 
 const std::vector<const char*> kReadOnly = {"/scene",

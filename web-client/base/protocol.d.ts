@@ -133,7 +133,7 @@ export type ClientKeyup = {
   type: 'keyup';
 };
 
-export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientSwing | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShare | ClientShown;
+export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientSwing | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShare | ClientShown | ClientPoint;
 
 export type ClientNavigate = {
   /** Asks for exactly one answer, which has the same `id`. It rises. */
@@ -188,6 +188,18 @@ export type ClientPick = {
   x: number;
   /** CSS pixels from the view's top edge. */
   y: number;
+};
+
+export type ClientPoint = {
+  /** The frame whose camera counts, as of `pick`; without it the present camera. */
+  frame?: number;
+  /** Asks for exactly one answer, which has the same `id`. It rises. */
+  id?: number;
+  type: 'point';
+  /** CSS pixels from the view's left edge. Without `y` it must be missing. */
+  x?: number;
+  /** CSS pixels from the view's top edge. Without `x` it must be missing. */
+  y?: number;
 };
 
 export type ClientPointercancel = {
@@ -848,7 +860,7 @@ export type ServerLoading = {
   type: 'loading';
 };
 
-export type ServerMessage = ServerWelcome | ServerOk | ServerPicked | ServerFlown | ServerTree | ServerScenes | ServerShared | ServerLoading | ServerStats | ServerError | ServerState | ServerPatch;
+export type ServerMessage = ServerWelcome | ServerOk | ServerPicked | ServerPointed | ServerFlown | ServerTree | ServerScenes | ServerShared | ServerLoading | ServerStats | ServerError | ServerState | ServerPatch;
 
 export type ServerOk = {
   /** Of the message. */
@@ -897,6 +909,18 @@ export type ServerPicked = {
     point: Array<number>;
   };
   type: 'picked';
+};
+
+export type ServerPointed = {
+  /** Who points. */
+  client: string;
+  /** As others see that client, where it has a name. */
+  name?: string;
+  /** Of the face, unit, towards who points; with `point`. */
+  normal?: Array<number>;
+  /** In the world; missing: that client points at nothing any more. */
+  point?: Array<number>;
+  type: 'pointed';
 };
 
 export type ServerScenes = {
@@ -1172,6 +1196,11 @@ export type StateDocument = {
   }>;
   /** What has gone wrong in the server, the newest last. */
   notices: Array<Notice>;
+  /** Who may point. */
+  pointing: {
+    /** Clients of the roles `view` and `host` may point, too. */
+    watchers: boolean;
+  };
   /** How frames are drawn while things move. */
   quality: {
     /** How old a frame may be when the holder sees it, while things move. */
@@ -1347,6 +1376,9 @@ export type StatePatch = {
     material?: null | number;
     matrix?: null | Array<number>;
   }>;
+  pointing?: null | {
+    watchers?: null | boolean;
+  };
   quality?: null | {
     latencyTargetMs?: null | number;
     preference?: null | number;

@@ -8,7 +8,7 @@ import { readFrame } from './frame-file.js';
 
 export const SUBPROTOCOL = 'vrut-preview.v1';
 const WITHIN_MS = 5000;
-const SILENT_UNLESS_WRONG = /^(pointer(down|move|up|cancel)|wheel|key(down|up)|frame)$/;
+const SILENT_UNLESS_WRONG = /^(pointer(down|move|up|cancel)|wheel|key(down|up)|point|frame)$/;
 const ANSWERED_BY = { hello: 'welcome', pick: 'picked', tree: 'tree', scenes: 'scenes', share: 'shared' };
 
 /** RFC 7396. */
