@@ -1,4 +1,5 @@
-// A host without walls: prints the shared camera as it changes, and reports it shown at once.
+// A host without walls: prints the shared camera as it changes and what others point at, and reports the
+// camera shown at once.
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -23,7 +24,7 @@ volatile std::sig_atomic_t interrupted = 0;
 constexpr const char* kUsage =
     "Usage: example_host [--host ADDRESS] [--port N] [--tls] [--ca-file FILE] [--server-name NAME]\n"
     "                    [--token TEXT] [--name TEXT] [--lead]\n\n"
-    "Follows the camera of VRUT Preview: one line a change, until interrupted.\n\n"
+    "Follows the camera of VRUT Preview and what others point at: one line a change, until interrupted.\n\n"
     "  --host         default 127.0.0.1\n"
     "  --port         default 8080\n"
     "  --tls          speak TLS\n"
@@ -96,6 +97,16 @@ void print_camera(std::int64_t revision, const Camera& camera) {
     std::fflush(stdout);
 }
 
+void print_pointed(const Pointed& pointed) {
+    std::printf("%s", pointed.point ? "points" : "points no more");
+    if (pointed.point) {
+        print_vector("at", *pointed.point);
+        print_vector("normal", pointed.normal);
+    }
+    std::printf(" client %s name %s\n", pointed.client.c_str(), pointed.name.c_str());
+    std::fflush(stdout);
+}
+
 /// `v` turned about the vertical through `center`.
 Vector3 turned(const Vector3& v, const Vector3& center, double radians) {
     const double x = v[0] - center[0], z = v[2] - center[2], c = std::cos(radians), s = std::sin(radians);
@@ -126,6 +137,8 @@ void run(const Arguments& arguments) {
         print_camera(preview.revision(), camera);
         preview.report_shown(preview.revision());  // a real host: when its walls show it
     };
+
+    preview.on_pointed = print_pointed;  // a real host draws a dot on its walls
 
     Camera start;
     while (!interrupted) {

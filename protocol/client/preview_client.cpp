@@ -187,6 +187,7 @@ struct PreviewClient::Impl {
     std::function<void()> read_message(const std::string& text);
     std::function<void()> read_welcome(const Json& message);
     std::function<void()> read_state(Json message, bool whole);
+    std::function<void()> read_pointed(const Json& message);
     std::function<void()> read_error(const Json& message);
 
     enum class Kind { hello, shown, lead, patch };
@@ -434,6 +435,7 @@ std::function<void()> PreviewClient::Impl::read_message(const std::string& text)
                 if (self.on_loading) self.on_loading(loading);
             };
     }
+    if (type == "pointed") return read_pointed(message);
     return [this, type, text] {
         if (self.on_message) self.on_message(type, text);
     };
@@ -472,6 +474,19 @@ std::function<void()> PreviewClient::Impl::read_state(Json message, bool whole) 
         if (joined && self.on_connection) self.on_connection(true);
         if (self.on_state) self.on_state(text, whole);
         if (moved && self.on_camera) self.on_camera(camera, mine);
+    };
+}
+
+std::function<void()> PreviewClient::Impl::read_pointed(const Json& message) {
+    Pointed pointed;
+    message.at("client").get_to(pointed.client);
+    pointed.name = message.value("name", "");
+    if (message.contains("point")) {
+        pointed.point = message["point"].get<Vector3>();
+        message.at("normal").get_to(pointed.normal);
+    }
+    return [this, pointed = std::move(pointed)] {
+        if (self.on_pointed) self.on_pointed(pointed);
     };
 }
 

@@ -68,6 +68,14 @@ struct Loading {
     std::string refused;  ///< a sentence; empty: it was not
 };
 
+/// What a client points at now.
+struct Pointed {
+    std::string client;            ///< its id
+    std::string name;              ///< as others see it; empty: it has none
+    std::optional<Vector3> point;  ///< world; none: it points at nothing any more
+    Vector3 normal{0, 0, 1};       ///< of the surface there: unit, towards who points
+};
+
 /// Everything happens in the thread that calls, and callbacks come out of poll() alone. They may call the
 /// other members, and what they throw comes out of poll(); nothing else does.
 class PreviewClient {
@@ -113,6 +121,9 @@ public:
     std::function<void(const std::string& changes, bool whole)> on_state;
     /// A scene is being loaded, has been, or is refused.
     std::function<void(const Loading&)> on_loading;
+    /// Somebody points at something, or at nothing any more. Who does not say so within 2 s has been lost:
+    /// hide the point then. When the connection is lost or a scene loaded, hide all.
+    std::function<void(const Pointed&)> on_pointed;
     /// A connection that cannot be made or is lost is told once, not at each attempt.
     std::function<void(const Problem&)> on_error;
     /// Messages of all other types (`ok`, `stats`, …) as they came.

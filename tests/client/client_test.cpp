@@ -486,6 +486,32 @@ TEST_CASE("a client says who it is, answers pings, and tells of loading and of w
     CHECK(host.messages[0].second["of"] == "tomorrow");
 }
 
+TEST_CASE("a host is told what others point at, until it is taken away") {
+    TestServer server;
+    Host host(server.port());
+    std::vector<client::Pointed> told;
+    host.client.on_pointed = [&](const client::Pointed& pointed) { told.push_back(pointed); };
+    host.join();
+    TestClient tablet(server.port());
+    tablet.send({{"type", "hello"}, {"role", "control"}, {"name", "Tablet"}});
+    tablet.wait_for("state");
+    tablet.send({{"type", "patch"},
+                 {"patch", {{"camera", {{"eye", {0, 0, 10}}, {"focus", {0, 0, 0}}, {"up", {0, 1, 0}}}}}}});
+    tablet.send({{"type", "point"}, {"x", 640}, {"y", 360}});
+    REQUIRE(host.poll_until([&] { return !told.empty(); }));
+    CHECK(told[0].client == "c2");
+    CHECK(told[0].name == "Tablet");
+    REQUIRE(told[0].point.has_value());
+    CHECK((*told[0].point)[2] == doctest::Approx(0.5));  // the triangle's plane is z = (y + 1) / 2
+    CHECK(told[0].normal[2] == doctest::Approx(2 / std::sqrt(5)));
+    tablet.send({{"type", "point"}});
+    REQUIRE(host.poll_until([&] { return told.size() == 2; }));
+    CHECK(told[1].client == "c2");
+    CHECK_FALSE(told[1].point.has_value());
+    CHECK(host.messages.empty());
+    CHECK(host.problems.empty());
+}
+
 TEST_CASE("a server that talks nonsense, or more than it said, is left") {
     const std::vector<std::string> nonsense = {
         "nonsense",

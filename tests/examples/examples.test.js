@@ -244,6 +244,17 @@ test('example_host prints the camera that others set, and ends at SIGINT', async
   assert.equal(await ended, 0);
 });
 
+test('example_host prints what others point at', async () => {
+  watcher.send({ type: 'patch', patch: { camera: { eye: [4, 1.5, 3], focus: [0, 0.5, 0], up: [0, 1, 0], fov: 35 } } });
+  const host = spawn(VRUT_EXAMPLE_HOST, ['--port', port, '--token', TOKEN, '--name', 'wall']);
+  await printed(host, /^revision /);
+  watcher.send({ type: 'point', x: 640, y: 360 });
+  await printed(host, /^points at \S+ \S+ \S+ normal \S+ \S+ \S+ client c1 name \n/m);
+  watcher.send({ type: 'point' });
+  await printed(host, /^points no more client c1 name \n/m);
+  host.kill('SIGINT');
+});
+
 test('example_host leads the camera once around, back to where it was', async () => {
   await new Promise((resolve) => setTimeout(resolve, 1200)); // until who steered last counts as quiet
   const { eye } = watcher.state.camera;
