@@ -47,6 +47,7 @@ const connection = new Connection({
     message(message) {
       if (message.type === 'stats') store.set({ stats: message });
       else if (message.type === 'loading') stage.loading(message);
+      else if (message.type === 'pointed') stage.pointed(message);
     },
   },
 });
@@ -55,8 +56,9 @@ const commands = commandsBy({ ask: (message) => connection.ask(message), refused
 const stage = new Stage({ store, commands, connection, meter, hasToken: token.inAddress });
 const offer = (text, label, act) => stage.offer(text, label, act);
 const nextTap = (text, signal) => stage.nextTap(text, signal);
-const menu = new Menu({ store, commands, meter, report, offer, nextTap, snapping: stage.snapping, setLanguage: speak });
-const bar = new Bar({ store, commands, menu });
+const { snapping, turnPointing } = stage;
+const menu = new Menu({ store, commands, meter, report, offer, nextTap, snapping, turnPointing, setLanguage: speak });
+const bar = new Bar({ store, commands, menu, turnPointing });
 
 store.subscribe(({ role }) => [role === 'control'], (wanted) => Object.assign(awake, { wanted }));
 

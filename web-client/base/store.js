@@ -7,13 +7,13 @@
  *   reason?: {code?: string, message: string}}} Phase
  *
  * What the page knows: what the server made it while connected, the state as last heard, the header last drawn, whether
- * that frame is of this connection, what covers the view's sides, what the server measures, and which of the sections has
- * a handle in the picture.
+ * that frame is of this connection, what covers the view's sides, what the server measures, which of the sections has
+ * a handle in the picture, and whether a finger points.
  *
  * @typedef {{phase: Phase, role?: ClientHello['role'], client?: string, steers: boolean, state: ?StateDocument,
  *   revision: number, header: ?FrameHeader, hasPicture: boolean,
  *   inset: {top: number, right: number, bottom: number, left: number}, stats: ?ServerStats, language: string,
- *   handled: ?string}} Now
+ *   handled: ?string, points: boolean}} Now
  */
 
 /**
@@ -40,7 +40,7 @@ export class Store {
   now = {
     phase: { name: 'starting' }, steers: false, state: null, revision: 0, header: null, hasPicture: false,
     inset: { top: 0, right: 0, bottom: 0, left: 0 }, stats: null,
-    language: 'en', handled: null,
+    language: 'en', handled: null, points: false,
   };
   /** @type {((now: Now) => void)[]} */
   #subscribers = [];

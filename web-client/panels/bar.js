@@ -2,6 +2,7 @@ import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
 import { rows, toggle } from './controls.js';
+import { pointButton } from './pointing.js';
 import { stateOf } from './section.js';
 import { Trail } from './trail.js';
 import { doorControl, variantControl, variants } from './variants.js';
@@ -24,6 +25,8 @@ export class Bar {
   #store;
   #commands;
   #menu;
+  #turnPointing;
+  #point = /** @type {?HTMLElement} */ (null);
   #trail = new Trail(() => this.#showBack());
   /** The button of the strip that is open. @type {?HTMLElement} */
   #opener = null;
@@ -32,8 +35,9 @@ export class Bar {
   #back = null;
   #chosen = { key: '', at: -Infinity };
 
-  /** Empty until `rebuild`. @param {{store: Store, commands: Commands, menu: Menu}} page */
-  constructor({ store, commands, menu }) {
+  /** Empty until `rebuild`. @param {{store: Store, commands: Commands, menu: Menu, turnPointing: () => void}} page */
+  constructor({ store, commands, menu, turnPointing }) {
+    this.#turnPointing = turnPointing;
     this.#store = store;
     this.#commands = commands;
     this.#menu = menu;
@@ -50,6 +54,7 @@ export class Bar {
     store.subscribe(({ state }) => [state?.scene], () => this.#open(null));
     store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes, state?.swings, state?.navigation],
       () => this.#showStrip());
+    store.subscribe(({ points, language }) => [points, language], () => this.#showPoint());
   }
 
   /** What this page sent. */
@@ -73,7 +78,9 @@ export class Bar {
     this.#back = back;
     const sections = button(say('sections.title'), () => this.#menu.open(sections, 'sections'), { icon: 'section' });
     const measures = button(say('measures.title'), () => this.#menu.open(measures, 'measures'), { icon: 'measure' });
-    for (const spare of [sections, measures]) spare.classList.add('spare');
+    const point = pointButton(this.#turnPointing);
+    this.#point = point;
+    for (const spare of [sections, measures, point]) spare.classList.add('spare');
     const more = button(say('bar.more'), () => this.#menu.open(more), { icon: 'menu' });
     this.#open(null);
     this.#bar.ariaLabel = say('bar.label');
@@ -86,13 +93,19 @@ export class Bar {
       opens(say('parts.doors'), 'door', () => this.#doors()),
       sections,
       measures,
+      point,
       more,
     );
     this.#showBack();
+    this.#showPoint();
   }
 
   #showBack() {
     if (this.#back) this.#back.ariaDisabled = String(this.#trail.isEmpty);
+  }
+
+  #showPoint() {
+    if (this.#point) this.#point.ariaPressed = String(this.#store.now.points);
   }
 
   /** The strip of a button, or none. `build` gives its content, and how that follows the state. */

@@ -39,7 +39,7 @@ export class Menu {
     this.#panel = panel;
     this.#page = { ...page, makeRoom: () => matchMedia(SHEET).matches && this.close() };
     this.#dialogs = new Dialogs(this.#page);
-    this.#watching = new Watching(store);
+    this.#watching = new Watching(store, page.turnPointing);
     opener.onclick = () => (stage.classList.contains('clean') ? this.#clean(false) : this.open(opener));
     panel.onkeydown = (event) => {
       // What is typed here is not meant for the view.

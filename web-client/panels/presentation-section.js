@@ -2,6 +2,7 @@ import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { holderName, say } from '../base/texts.js';
 import { choice, facts } from './controls.js';
+import { pointing } from './pointing.js';
 import { each, joined, stateOf } from './section.js';
 
 /**
@@ -20,13 +21,14 @@ const KEEPS_FILE_MS = 60_000;
  * @param {Page} page
  * @returns {Section}
  */
-export function presentationSection({ commands, store, offer }) {
+export function presentationSection(page) {
+  const { commands, store, offer } = page;
   const others = scenes({ commands, store, offer });
   return {
     name: 'presentation',
     title: say('presentation.title'),
     unfolded: others.unfolded,
-    ...joined([steering(commands), snapshot(commands, store), others]),
+    ...joined([steering(commands), pointing(page), snapshot(commands, store), others]),
   };
 }
 

@@ -1,5 +1,6 @@
 import { element } from '../base/element.js';
 import { holderName, say } from '../base/texts.js';
+import { pointButton } from './pointing.js';
 
 /**
  * @import { StateDocument } from '../base/protocol.js'
@@ -12,10 +13,16 @@ const STAYS_MS = 6000;
 export class Watching {
   #element = /** @type {HTMLElement} */ (document.getElementById('watching'));
   #words = element('p');
+  #store;
+  #turnPointing;
+  /** @type {?HTMLElement} */
+  #point = null;
   #timer;
 
-  /** Empty until `rebuild`. @param {Store} store */
-  constructor(store) {
+  /** Empty until `rebuild`. @param {Store} store @param {() => void} turnPointing */
+  constructor(store, turnPointing) {
+    this.#store = store;
+    this.#turnPointing = turnPointing;
     store.subscribe(({ role }) => [role], (role) => {
       if (!role) return; // not connected: what was allowed still is
       this.#element.hidden = role !== 'view';
@@ -24,6 +31,7 @@ export class Watching {
     store.subscribe(({ state, language }) => [state?.control, language], (control) => {
       if (control) this.#words.textContent = watchingWords(control);
     });
+    store.subscribe(({ points, state, language }) => [points, state?.pointing, language], () => this.#showPoint());
     for (const type of ['pointerdown', 'pointermove', 'keydown']) {
       document.addEventListener(type, () => this.#stay(), { capture: true, passive: true });
     }
@@ -33,8 +41,18 @@ export class Watching {
   rebuild(buttons) {
     const hadFocus = this.#element.contains(document.activeElement);
     this.#element.ariaLabel = say('watching.label');
-    this.#element.replaceChildren(this.#words, ...buttons);
+    const point = pointButton(this.#turnPointing);
+    this.#point = point;
+    this.#element.replaceChildren(this.#words, point, ...buttons);
+    this.#showPoint();
     if (hadFocus) buttons[0].focus();
+  }
+
+  #showPoint() {
+    const { points, state } = this.#store.now;
+    if (!this.#point) return;
+    this.#point.ariaPressed = String(points);
+    this.#point.hidden = state?.pointing?.watchers !== true;
   }
 
   #stay() {

@@ -10,14 +10,16 @@ import { nextTap } from './next-tap.js';
 import { PartBar } from './part-bar.js';
 import { Picture } from './picture.js';
 import { PlaneHandle } from './plane-handle.js';
+import { PointedMarks } from './pointed-marks.js';
+import { Pointer } from './pointer.js';
 import { Prediction } from './prediction.js';
 import { Presence } from './presence.js';
 import { Snapper } from './snapper.js';
 import { freeOf, watchViewSize } from './view-size.js';
 
 /**
- * @import { ServerError, ServerLoading, StateDocument } from '../base/protocol.js'
- * @import { Store } from '../base/store.js'
+ * @import { ServerError, ServerLoading, ServerPointed, StateDocument } from '../base/protocol.js'
+ * @import { Now, Store } from '../base/store.js'
  * @import { Commands } from '../connection/commands.js'
  * @import { Connection, Frame } from '../connection/connection.js'
  * @import { Meter } from '../connection/meter.js'
@@ -38,8 +40,10 @@ export class Stage {
   #labels = new Labels(find('labels'));
   #lines = new Lines(find('lines'));
   #measures = new MeasureMarks(find('measure-lines'), find('measures'), () => this.#showMeasures());
+  #pointed = new PointedMarks(find('pointed'));
   #handle;
   #snapper;
+  #pointer;
   #noticesSeen = new Set();
   #controlBar;
   #input;
@@ -71,6 +75,17 @@ export class Stage {
       say: (text) => this.#lines.hold('snap', text, undefined, { label: say('measures.done'), act: this.#endSnapping }),
       wheel: (event) => this.#canvas.dispatchEvent(new WheelEvent('wheel', event)),
       press: (event) => this.#canvas.dispatchEvent(new PointerEvent('pointerdown', event)),
+    });
+    this.#pointer = new Pointer(find('point-layer'), {
+      send: (pointed) => connection.send({ type: 'point', ...pointed }),
+      mapping: () => this.#picture.mapping(),
+      frame: () => this.#frame,
+      turned: (points) => {
+        const done = { label: say('pointing.done'), act: this.#endPointing };
+        this.#lines.hold('point', points ? say('pointing.hint') : '', undefined, done);
+        store.set({ points });
+      },
+      wheel: (event) => this.#canvas.dispatchEvent(new WheelEvent('wheel', event)),
     });
     const partBar = new PartBar(find('selection'), { commands, leave: () => this.#canvas.focus() });
     this.#input = new Input(this.#canvas, {
@@ -129,6 +144,8 @@ export class Stage {
       () => this.#showMeasures());
     // Without control nothing can be measured, and a node of another scene is another.
     store.subscribe(({ steers, state, language }) => [steers, state?.scene?.file, language], () => this.#snapper.end());
+    store.subscribe(({ state }) => [state?.scene?.file], () => this.#pointed.clear());
+    store.subscribe((now) => [mayPoint(now), now.client, now.language], this.#endPointing);
     store.subscribe(({ state }) => [state?.scene?.notices, state?.notices],
       (...notices) => this.#passNotices(notices.flat().filter(Boolean)));
   }
@@ -137,6 +154,7 @@ export class Stage {
   phase() {
     this.#input.enabled = this.#store.now.steers;
     this.#prediction.forget();
+    this.#pointed.clear();
     this.#move();
     this.#lines.hold('loading', '');
     this.#showPhase();
@@ -178,6 +196,19 @@ export class Stage {
     if (refused) this.#lines.pass(errorSentence({ code: 'refused-scene', message: refused }));
   }
 
+  /** @param {ServerPointed} message */
+  pointed(message) {
+    this.#pointed.told(message);
+    this.#pointed.show(this.#picture);
+  }
+
+  /** Begins or ends to point at what a finger touches. */
+  turnPointing = () => {
+    if (this.#store.now.points) return this.#pointer.end();
+    this.#snapper.end();
+    this.#pointer.begin();
+  };
+
   /**
    * Says what to tap, and promises where in which frame the picture is tapped next; null where that is given up.
    *
@@ -185,6 +216,7 @@ export class Stage {
    * @param {AbortSignal} signal
    */
   async nextTap(text, signal) {
+    this.#pointer.end();
     this.#lines.hold('tap', text);
     const tap = await nextTap(find('tap'), signal);
     this.#lines.hold('tap', '');
@@ -193,7 +225,15 @@ export class Stage {
 
   /** Picks that snap: the panels' Snapping. */
   get snapping() {
-    return this.#snapper;
+    const snapper = this.#snapper;
+    return {
+      begin: (session) => {
+        this.#pointer.end();
+        snapper.begin(session);
+      },
+      ask: (asked) => snapper.ask(asked),
+      end: () => snapper.end(),
+    };
   }
 
   /** Says what was done, with a button for what can be done about it. */
@@ -219,6 +259,8 @@ export class Stage {
 
   /** What was refused is no answer to a question. @param {ServerError} error */
   inputRefused(error) {
+    // What a finger points at next is in a newer one.
+    if (error.code === 'unknown-frame') return;
     if (error.code === 'not-in-control') this.#prediction.release();
     this.#move();
     this.report(error);
@@ -230,6 +272,7 @@ export class Stage {
     this.#labels.show(this.#picture, this.#store.now.state?.markers);
     this.#showHandle();
     this.#showMeasures();
+    this.#pointed.show(this.#picture);
     this.#snapper.look();
     if (this.#prediction.flies) this.#flying ||= requestAnimationFrame(() => this.#flyOn());
   }
@@ -250,6 +293,7 @@ export class Stage {
   }
 
   #endSnapping = () => this.#snapper.end();
+  #endPointing = () => this.#pointer.end();
 
   /** The number of the frame shown. A server that has begun anew knows nothing of those before. */
   get #frame() {
@@ -280,6 +324,15 @@ export class Stage {
       this.#noticesSeen.add(notice.message);
     }
   }
+}
+
+/**
+ * Whether this page may point.
+ *
+ * @param {Pick<Now, 'role'|'state'>} now
+ */
+export function mayPoint({ role, state }) {
+  return role === 'control' || (role !== undefined && state?.pointing?.watchers === true);
 }
 
 /** Of index.html. */

@@ -259,6 +259,11 @@ export const cs = {
   'measures.unit': 'Délky v',
   'measures.sceneUnit': '1 jednotka scény je',
 
+  'pointing.point': 'Ukázat',
+  'pointing.hint': 'Dotkněte se obrazu, ostatní uvidí kde.',
+  'pointing.done': 'Hotovo',
+  'pointing.watchers': 'Diváci mohou ukazovat',
+
   'snap.point': 'bod',
   'snap.vertex': 'roh',
   'snap.midpoint': 'střed hrany',

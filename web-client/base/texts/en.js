@@ -252,6 +252,11 @@ export const en = {
   'measures.unit': 'Lengths in',
   'measures.sceneUnit': '1 unit of the scene is',
 
+  'pointing.point': 'Point',
+  'pointing.hint': 'Touch the picture: others see where.',
+  'pointing.done': 'Done',
+  'pointing.watchers': 'Watchers may point',
+
   'snap.point': 'point',
   'snap.vertex': 'corner',
   'snap.midpoint': 'middle of an edge',
