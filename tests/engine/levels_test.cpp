@@ -343,6 +343,24 @@ TEST_CASE("an interactive frame at full accuracy is the first sample of the refi
     CHECK(drag.server.metrics().samples_drawn == drawn + 15);
 }
 
+TEST_CASE("points that wait for their turn do not put off the picture at rest") {
+    Drag drag;
+    drag.moves(2);
+    TestClient other(drag.server.port());
+    other.join("view");
+    drag.move(1);
+    Json level;
+    const auto end = std::chrono::steady_clock::now() + 3s;
+    while (level != "still" && std::chrono::steady_clock::now() < end) {
+        other.send({{"type", "point"}, {"x", 10}, {"y", 10}});
+        const auto message = drag.client.receive(5ms);
+        if (!message || !message->binary) continue;
+        level = message->json()["quality"]["level"];
+        drag.client.grant();
+    }
+    CHECK(level == "still");
+}
+
 TEST_CASE("at rest nothing is drawn, read back or encoded, with and without grants") {
     Drag drag;
     const auto counted = [&] {
