@@ -103,6 +103,21 @@ std::optional<Packet> RoomOwner::packet_of(decltype(protocol::RoomMessage::what)
     return Packet{protocol::encode(protocol::RoomMessage{lease_, ++number_, std::move(what)})};
 }
 
+std::vector<protocol::RoomAnswer> RoomOwner::keep_answers(const std::vector<room::Answer>& answers) {
+    std::vector<protocol::RoomAnswer> of_edges;
+    for (const room::Answer& answer : answers) {
+        if (!is_of_edge(answer.client)) continue;
+        of_edges.push_back({answer.client, answer.text, answer.revision});
+        answers_.push_back(of_edges.back());
+        answer_bytes_ += answer.text.size();
+        while (answers_.size() > kAnswersKept || answer_bytes_ > kAnswerBytesKept) {
+            answer_bytes_ -= answers_.front().text.size();
+            answers_.pop_front();
+        }
+    }
+    return of_edges;
+}
+
 std::optional<Packet> RoomOwner::output_packet(engine::EngineOutput output) {
     protocol::RoomOutput said;
     said.again = output.again;
@@ -114,16 +129,7 @@ std::optional<Packet> RoomOwner::output_packet(engine::EngineOutput output) {
         said.by = by_ = output.by;
         said.by_since = by_since_ = output.by_since;
     }
-    for (const room::Answer& answer : output.answers) {
-        if (!is_of_edge(answer.client)) continue;
-        said.answers.push_back({answer.client, answer.text, answer.revision});
-        answers_.push_back(said.answers.back());
-        answer_bytes_ += answer.text.size();
-        while (answers_.size() > kAnswersKept || answer_bytes_ > kAnswerBytesKept) {
-            answer_bytes_ -= answers_.front().text.size();
-            answers_.pop_front();
-        }
-    }
+    said.answers = keep_answers(output.answers);
     for (const std::string& picture : output.failed_pictures)
         if (is_of_edge(picture)) said.failed_pictures.push_back(picture);
     for (const auto& [client, handled] : output.handled) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "base/clock.hpp"
 #include "engine/output.hpp"
@@ -86,6 +87,8 @@ private:
     Client* find(const std::string& edge, const std::string& client);
 
     // --- to edges, on the outbox's thread
+    /// Those for clients of edges.
+    std::vector<protocol::RoomAnswer> keep_answers(const std::vector<room::Answer>& answers);
     std::optional<Packet> output_packet(engine::EngineOutput output);
     std::optional<Packet> picture_packet(const engine::EncodedPicture& picture);
     std::optional<Packet> packet_of(decltype(protocol::RoomMessage::what) what);
