@@ -9,8 +9,8 @@
 namespace vrut::server::scenes {
 
 /// Where it is kept what clients have changed of a scene, which is named by LoadedScene::changes_key():
-/// views, markers, measures, the unit and parts. In the state folder, the folder scenes. Empty where there is no
-/// state folder.
+/// views, markers, measures, the unit and parts. In the state folder, the folder scenes. Empty where there is
+/// no state folder.
 std::filesystem::path changes_file(const std::string& scene);
 
 /// Keeps a patch of the state, which leads from what the scene's file says to what stands now, whole or not
