@@ -216,7 +216,7 @@ void Room::advance(SessionTime at) {
         const Tap tap = *std::exchange(tap_, std::nullopt);
         begin_swing(tap.node, {}, protocol::Swing{}.ms, tap.due);
     }
-    tell_pointings();
+    send_pointings();
     advance_swings();
     if (!flight_) return;
     if (!changing_.empty()) document();

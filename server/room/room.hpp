@@ -28,7 +28,7 @@ namespace vrut::server::room {
 
 /// Picks may name one of so many frames.
 inline constexpr std::size_t kFramesRemembered = 64;
-/// What a client points at is told at most 30 times a second.
+/// What a client points at is sent at most 30 times a second.
 inline constexpr SessionTime kPointsApart{33'334};
 
 /// What is to be sent to a client; it must know `revision` of the state first.
@@ -298,13 +298,13 @@ private:
         std::optional<mesh::Ray> ray = {};  ///< along which it points; none: at nothing
         bool waits = false;                 ///< others do not know it yet
         bool is_shown = false;              ///< they know a point
-        std::optional<SessionTime> told = {};
-        /// When others may be told the next.
-        SessionTime due() const { return told ? *told + kPointsApart : SessionTime{0}; }
+        std::optional<SessionTime> last_sent = {};
+        /// When the next may be sent.
+        SessionTime due() const { return last_sent ? *last_sent + kPointsApart : SessionTime{0}; }
     };
     bool may_point(const std::string& client) const;
     /// Looks at what is hit, where it is time for that.
-    void tell_pointings();
+    void send_pointings();
     void stop_pointing(const std::string& client);
     void stop_all_pointings();
     /// Who may point has changed.

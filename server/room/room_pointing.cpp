@@ -31,17 +31,17 @@ void Room::apply(const Received& received, const protocol::Point& point) {
     Pointing& pointing = pointings_[received.client];
     pointing.ray = ray;
     pointing.waits = true;
-    tell_pointings();
+    send_pointings();
 }
 
-void Room::tell_pointings() {
+void Room::send_pointings() {
     for (auto& [client, pointing] : pointings_) {
         if (!pointing.waits || pointing.due() > time_) continue;
         pointing.waits = false;
         if (!pointing.ray && !pointing.is_shown) continue;
-        pointing.told = time_;
+        pointing.last_sent = time_;
         const auto hit = pointing.ray ? hit_along(*pointing.ray, false) : std::nullopt;
-        // That it points at nothing is told once.
+        // That it points at nothing is sent once.
         if (hit || pointing.is_shown) pointed_[client] = {client, shown_name(client), {}, {}};
         pointing.is_shown = hit.has_value();
         if (!hit) continue;

@@ -1,4 +1,4 @@
-/** Their hues are told apart, and each is read on a dark chip. */
+/** Their hues can be distinguished, and each is read on a dark chip. */
 const COLORS = ['#ffd54d', '#7cc8ff', '#ff9bcb', '#8fe66f', '#cdb0ff', '#ffa866', '#5fe3d3'];
 
 /**

@@ -9,7 +9,7 @@ import { clientName } from '../base/texts.js';
  * @typedef {{point: number[], dot: HTMLElement, label: HTMLElement, timer: ReturnType<typeof setTimeout>}} Shown
  */
 
-/** Who points says so more often; else it is lost. */
+/** A client that points sends more often; else it is lost. */
 const STAYS_MS = 2000;
 
 /** Shows what clients point at: a dot with a name, in a colour of each, in a container as large as the window. */
@@ -23,8 +23,8 @@ export class PointedMarks {
     this.#container = container;
   }
 
-  /** What the server said; show() is to be called then. @param {ServerPointed} message */
-  told({ client, name, point }) {
+  /** show() must follow. @param {ServerPointed} message */
+  receive({ client, name, point }) {
     const before = this.#shown.get(client);
     clearTimeout(before?.timer);
     if (!point) {

@@ -27,7 +27,7 @@ export class Pointer {
    * @param {{
    *   send: (pointed: Pointed|{}) => void, mapping: () => (x: number, y: number) => Place, frame: () => number|undefined,
    *   turned: (isOn: boolean) => void, wheel: (event: WheelEvent) => void, clock?: () => number,
-   * }} page `send`: what is pointed at, or nothing; `turned` is told when it begins and when it ends
+   * }} page `send`: what is pointed at, or nothing; `turned` is called when it begins and when it ends
    */
   constructor(layer, page) {
     this.#layer = layer;

@@ -198,7 +198,7 @@ export class Stage {
 
   /** @param {ServerPointed} message */
   pointed(message) {
-    this.#pointed.told(message);
+    this.#pointed.receive(message);
     this.#pointed.show(this.#picture);
   }
 

@@ -37,16 +37,16 @@ beforeEach(() => {
 
 afterEach(() => restore());
 
-const told = (client, x, name) => {
-  marks.told({ type: 'pointed', client, ...(name ? { name } : {}), ...(x === undefined ? {} : { point: [x, 0, 0], normal: [0, 0, 1] }) });
+const received = (client, x, name) => {
+  marks.receive({ type: 'pointed', client, ...(name ? { name } : {}), ...(x === undefined ? {} : { point: [x, 0, 0], normal: [0, 0, 1] }) });
   marks.show(picture);
 };
 const parts = (tag) => container.children.filter((part) => part.tag === tag);
 const shown = () => parts('p').filter(({ hidden }) => !hidden).map(({ textContent, style }) => [textContent, style.transform]);
 
 test('each who points has a dot with a name, which goes with the point', () => {
-  told('c1', 10, 'iPad');
-  told('c2', 70);
+  received('c1', 10, 'iPad');
+  received('c2', 70);
   assert.deepEqual(shown(), [['iPad', 'translate(10.0px, 5.0px)'], ['Client c2', 'translate(70.0px, 5.0px)']]);
   const [first, second] = parts('i').map(({ style }) => style['--color']);
   assert.notEqual(first, second);
@@ -54,23 +54,23 @@ test('each who points has a dot with a name, which goes with the point', () => {
   // The name is on the side that has more room.
   assert.deepEqual(parts('p').map(({ classes }) => classes.has('before')), [false, true]);
   const { children } = container;
-  told('c1', 20, 'iPad');
+  received('c1', 20, 'iPad');
   assert.deepEqual([container.children.length, container.children[0]], [4, children[0]]);
   assert.deepEqual(shown()[0], ['iPad', 'translate(20.0px, 5.0px)']);
   assert.equal(parts('i')[0].style.transform, 'translate(20.0px, 5.0px)');
 });
 
 test('it is taken away by who points, where it is out of sight, and after 2 s without news', () => {
-  told('c1', 10);
-  told('c2', 20);
-  told('c3', 30);
-  told('c1');
+  received('c1', 10);
+  received('c2', 20);
+  received('c3', 30);
+  received('c1');
   assert.deepEqual(shown().map(([name]) => name), ['Client c2', 'Client c3']);
-  told('c3', -1);
+  received('c3', -1);
   assert.deepEqual(shown().map(([name]) => name), ['Client c2']);
-  told('c3', 40);
+  received('c3', 40);
   clock.advance(1500);
-  told('c2', 50);
+  received('c2', 50);
   clock.advance(1500);
   assert.deepEqual(shown().map(([name]) => name), ['Client c2']);
   clock.advance(500);
@@ -79,10 +79,10 @@ test('it is taken away by who points, where it is out of sight, and after 2 s wi
 
 test('while nobody points, nothing is asked of the picture, and no timer is set', () => {
   marks.show(picture);
-  told('c1');
+  received('c1');
   assert.deepEqual([asked, clock.next], [0, undefined]);
-  told('c1', 10);
-  told('c2', 10);
+  received('c1', 10);
+  received('c2', 10);
   marks.clear();
   marks.show(picture);
   assert.deepEqual([container.children.length, clock.next], [0, undefined]);
