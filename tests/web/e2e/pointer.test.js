@@ -88,7 +88,7 @@ describe('pointing', { skip: browserIsMissing }, () => {
     for (const tablet of [watcher, presenter]) await none(tablet);
     await presenter.page.keyboard.press('Escape');
     await line(presenter).waitFor({ state: 'detached' });
-    assert.equal(await point(presenter, '#bar').getAttribute('aria-pressed'), 'false');
+    await presenter.page.locator('#bar').getByRole('button', { name: 'Point', pressed: false }).waitFor();
     assert.deepEqual(pose(presenter.wire.state.camera), pose(before));
     assert.deepEqual([...new Set(presenter.wire.sent.slice(mark).map(({ type }) => type))], ['point']);
   });
