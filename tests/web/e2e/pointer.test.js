@@ -50,7 +50,7 @@ describe('pointing', { skip: browserIsMissing }, () => {
     const before = structuredClone(presenter.wire.state.camera);
     await point(watcher, '#watching').tap();
     await line(watcher).waitFor();
-    assert.equal(await point(watcher, '#watching').getAttribute('aria-pressed'), 'true');
+    await watcher.page.locator('#watching').getByRole('button', { name: 'Point', pressed: true }).waitFor();
     await touch(watcher, 'touchStart', PLACES[0]);
     for (const tablet of [watcher, presenter]) await isAt(tablet, 'Android', PLACES[0]);
     await touch(watcher, 'touchMove', PLACES[1]);
