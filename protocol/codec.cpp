@@ -31,7 +31,7 @@ Control checked(Control control) {
     return control;
 }
 
-/// Where it points is told as a whole.
+/// Both coordinates come, or neither.
 Point checked(Point point) {
     if (point.x && !point.y) throw BadJson{error_code::bad_message, "member 'y' is missing"};
     if (!point.x && (point.y || point.frame)) throw BadJson{error_code::bad_message, "member 'x' is missing"};

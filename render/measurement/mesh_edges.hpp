@@ -30,7 +30,7 @@ public:
     }
     /// Triangles whose boxes overlap with this one, by rising number.
     std::vector<unsigned> triangles_near(const math::Bounds& box) const;
-    /// Chains of which an edge's box overlaps with this one, by rising number.
+    /// Chains that have an edge whose box overlaps with this one, by rising number.
     std::vector<std::size_t> chains_near(const math::Bounds& box) const;
 
 private:

@@ -1,3 +1,5 @@
+import { listenOnLayer } from './layer-events.js';
+
 /**
  * @import { Place } from '../navigation/drags.js'
  *
@@ -39,30 +41,14 @@ export class Pointer {
     this.#isOn = true;
     this.#layer.hidden = false;
     this.#listening = new AbortController();
-    const { signal } = this.#listening;
-    const listen = (handlers) => {
-      for (const [type, handler] of Object.entries(handlers)) {
-        this.#layer.addEventListener(type, handler.bind(this), { signal, passive: false });
-      }
-    };
-    listen({
+    listenOnLayer(this.#layer, this, {
       pointerdown: this.#down,
       pointermove: this.#move,
       pointerup: this.#up,
       pointercancel: this.#up,
       lostpointercapture: this.#up,
       wheel: this.#wheel,
-      contextmenu: (event) => event.preventDefault(),
-      // Or Chromium drops a tap soon after a flick.
-      touchmove: (event) => event.preventDefault(),
-    });
-    // Before the menu and the view, which have other uses for the key.
-    document.addEventListener('keydown', (event) => {
-      if (event.key !== 'Escape') return;
-      event.preventDefault();
-      event.stopPropagation();
-      this.end();
-    }, { capture: true, signal });
+    }, this.#listening.signal);
     this.#page.turned(true);
   }
 

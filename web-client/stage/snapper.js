@@ -1,6 +1,7 @@
 import { SNAPS } from '../base/measures.js';
 import { say } from '../base/texts.js';
 import { Latest } from './latest.js';
+import { listenOnLayer } from './layer-events.js';
 import { Loupe } from './loupe.js';
 import { dotData, pathData, showSign } from './snap-signs.js';
 
@@ -74,13 +75,7 @@ export class Snapper {
     this.#session = session;
     this.#layer.hidden = false;
     this.#listening = new AbortController();
-    const { signal } = this.#listening;
-    const listen = (handlers) => {
-      for (const [type, handler] of Object.entries(handlers)) {
-        this.#layer.addEventListener(type, handler.bind(this), { signal, passive: false });
-      }
-    };
-    listen({
+    listenOnLayer(this.#layer, this, {
       pointerdown: this.#down,
       pointermove: this.#move,
       pointerup: this.#up,
@@ -88,17 +83,7 @@ export class Snapper {
       lostpointercapture: this.#cancel,
       pointerleave: this.#leave,
       wheel: this.#wheel,
-      contextmenu: (event) => event.preventDefault(),
-      // Or Chromium drops a tap soon after a flick.
-      touchmove: (event) => event.preventDefault(),
-    });
-    // Before the menu and the view, which have other uses for the key.
-    document.addEventListener('keydown', (event) => {
-      if (event.key !== 'Escape') return;
-      event.preventDefault();
-      event.stopPropagation();
-      this.end();
-    }, { capture: true, signal });
+    }, this.#listening.signal);
   }
 
   /** @param {Asked} asked */

@@ -1,4 +1,4 @@
-// Contract: what one points at, all are told, and nothing else happens.
+// Contract: all get what one points at, and nothing else happens.
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { ContractClient } from './contract-client.js';
@@ -14,7 +14,7 @@ const toldOf = (client, who, seen = 0) => client.texts.slice(seen).filter(({ typ
 const near = (a, b) => a.every((x, i) => Math.abs(x - b[i]) < 0.03);
 const places = (told) => told.map(({ point }) => point ?? null);
 
-/** Who presents, a wall and a watcher, who all are told what a client points at. */
+/** Who presents, a wall and a watcher, who all get what a client points at. */
 async function everybody(t) {
   const presenter = await steering(t, server, {});
   const wall = await ContractClient.join(t, server, { role: 'host', name: 'Wall' });
