@@ -116,6 +116,7 @@ std::string encode(const Picked& message) { return encode_as("picked", message);
 std::string encode(const Pointed& message) { return encode_as("pointed", message); }
 std::string encode(const Flown& message) { return encode_as("flown", message); }
 std::string encode(const TreePage& message) { return encode_as("tree", message); }
+std::string encode(const Checked& message) { return encode_as("checked", message); }
 std::string encode(const SceneList& message) { return encode_as("scenes", message); }
 std::string encode(const SharedAddress& message) { return encode_as("shared", message); }
 std::string encode(const Loading& message) { return encode_as("loading", message); }

@@ -24,6 +24,7 @@ std::string encode(const Picked& message);
 std::string encode(const Pointed& message);
 std::string encode(const Flown& message);
 std::string encode(const TreePage& message);
+std::string encode(const Checked& message);
 std::string encode(const SceneList& message);
 std::string encode(const SharedAddress& message);
 std::string encode(const Loading& message);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "cue_list.hpp"
 #include "fields.hpp"
 #include "frame_header.hpp"
 #include "level_table.hpp"
@@ -177,6 +178,32 @@ void describe(V& v, const Patch*) {
 }
 
 template <class V>
+void describe(V& v, const Cue*) {
+    v.optional("name", &Cue::name, Text{100}, "Which. Without `step`.");
+    v.optional("step", &Cue::step, Integer{-static_cast<std::int64_t>(kMaxCues), kMaxCues},
+               "How many after the one that was shown last, in their order. Without `name`.");
+}
+
+template <class V>
+void describe(V& v, const Check*) {
+    v.required("cues", &Check::cues, AnyObject{{{"$ref", "#/$defs/cueList"}}},
+               "A list of cues as in its file.");
+}
+
+template <class V>
+void describe(V& v, const Checked::Problem*) {
+    v.optional("cue", &Checked::Problem::cue, kName, "Of which cue; missing: of the whole list.");
+    v.required("message", &Checked::Problem::message, kName, "What is wrong, a sentence.");
+}
+
+template <class V>
+void describe(V& v, const Checked*) {
+    v.required("id", &Checked::id, kId, "Of the `check`.");
+    v.required("problems", &Checked::problems, List<Object<Checked::Problem>>{{}, 0, kMaxCueProblems},
+               "What does not go with the scene; empty: all of it does.");
+}
+
+template <class V>
 void describe(V& v, const Feature*) {
     v.required("node", &Feature::node, kId, "The node whose surface it is on.");
     v.required("snap", &Feature::snap, kSnap, "What it is.");
@@ -239,6 +266,8 @@ void describe(V& v, const Snapshot*) {
     v.required("height", &Snapshot::height, kPixels, "Pixels.");
     v.optional("format", &Snapshot::format, kFormat, "Of the file.");
     v.optional("jpegQuality", &Snapshot::jpeg_quality, kJpegQuality, "Of a JPEG file.");
+    v.optional("cue", &Snapshot::cue, Text{100},
+               "The scene as this cue shows it; it is not shown to others.");
     v.optional("camera", &Snapshot::camera, kCameraOverlay,
                "Laid over the shared camera, which does not change.");
     v.optional("renderer", &Snapshot::renderer, Object<RendererOverlay>{},
@@ -732,6 +761,60 @@ void describe(V& v, const QualityState*) {
 }
 
 template <class V>
+void describe(V& v, const CueState::Camera*) {
+    using Camera = CueState::Camera;
+    v.writable("eye", &Camera::eye, kPosition, "Where the camera stands.");
+    v.writable("focus", &Camera::focus, kPosition, "What it looks at.");
+    v.writable("up", &Camera::up, kPosition,
+               "Which way is up in the image; unit, at right angles to the view.");
+    v.writable("center", &Camera::center, kPosition, "The centre of rotation.");
+    v.writable("fov", &Camera::fov, kFov, "The vertical angle of view in degrees.");
+}
+template <class V>
+void describe(V& v, const CueState::Lights*) {
+    v.writable("active", &CueState::Lights::active, kName, "Key of the light that shines.");
+}
+template <class V>
+void describe(V& v, const CueState::Backgrounds*) {
+    using Backgrounds = CueState::Backgrounds;
+    v.writable("active", &Backgrounds::active, kName,
+               "Key of the background that is shown, or `color`: the plain one.");
+    v.writable("color", &Backgrounds::color, kColor, "Red, green, blue, alpha of the plain background.");
+}
+template <class V>
+void describe(V& v, const CueState::Selection*) {
+    v.writable("node", &CueState::Selection::node, kId, "The node that is selected.");
+}
+
+template <class V>
+void describe(V& v, const CueState*) {
+    v.writable("order", &CueState::order, kOrder,
+               "Cues follow each other by it: the lowest first, then those without one, by name.");
+    v.writable("text", &CueState::text, Text{kMaxCueText}, "For who speaks.");
+    v.writable("ms", &CueState::ms, Number{0, 60'000}, "How long it takes to come to it, in milliseconds.");
+    v.writable("easing", &CueState::easing, word("smooth", "linear"), "As of `fly`.");
+    v.writable("camera", &CueState::camera, Section<CueState::Camera>{}, "Where the camera flies to.");
+    v.writable("lights", &CueState::lights, Section<CueState::Lights>{}, "Which light shines.");
+    v.writable("backgrounds", &CueState::backgrounds, Section<CueState::Backgrounds>{},
+               "What stands behind the scene.");
+    v.writable("selection", &CueState::selection, FromNothing<Section<CueState::Selection>>{},
+               "What is selected.");
+    v.writable("nodes", &CueState::nodes,
+               FromNothing<SharedTable<Entries<NodeOverride>>>{{{{}, kMaxNodes, nullptr}}},
+               "By id: all that differs from the file.");
+    v.writable("sections", &CueState::sections,
+               FromNothing<SharedTable<Entries<SectionState>>>{{{{}, kMaxSections, "normal"}}},
+               "All planes that cut the scene open, by name.");
+    v.writable("sectionBox", &CueState::section_box, Section<SectionBoxState>{},
+               "A box that cuts the scene open.");
+}
+
+template <class V>
+void describe(V& v, const ShownCueState*) {
+    v.fixed("name", &ShownCueState::name, kName, "Its name among the `cues`.");
+}
+
+template <class V>
 void describe(V& v, const PointingState*) {
     v.writable("watchers", &PointingState::watchers, Flag{},
                "Clients of the roles `view` and `host` may point, too.");
@@ -794,6 +877,9 @@ void describe(V& v, const State*) {
     v.fixed("measured", &State::measured, SharedTable<Table<MeasuredState>>{},
             "What `measures` come to as the parts stand now, by name.");
     v.writable("unit", &State::unit, Section<UnitState>{}, "Of lengths.");
+    v.writable("cues", &State::cues, SharedTable<Entries<CueState>>{{{}, kMaxCues, nullptr}},
+               "What a presentation shows, by name.");
+    v.fixed("cue", &State::cue, Object<ShownCueState>{}, "The cue that was shown last.");
     v.writable("quality", &State::quality, Section<QualityState>{},
                "How frames are drawn while things move.");
     v.writable("pointing", &State::pointing, Section<PointingState>{}, "Who may point.");
@@ -916,6 +1002,16 @@ void describe(V& v, const LevelTable*) {
     v.required("width", &LevelTable::width, kPixels, "Of the frames measured, at scale 1.");
     v.required("height", &LevelTable::height, kPixels, "Of the frames measured, at scale 1.");
     v.required("levels", &LevelTable::levels, List<Object<Level>>{{}, 1, kMaxLevels}, "By rising accuracy.");
+}
+
+// --- the file of a presentation
+
+template <class V>
+void describe(V& v, const CueList*) {
+    v.required("format", &CueList::format, word("vrut-preview-cues"), "What the file is.");
+    v.required("version", &CueList::version, Integer{1, CueList::kVersion}, "Of this format.");
+    v.optional("scene", &CueList::scene, Text{1000}, "Name of the scene's file; missing: any.");
+    v.required("cues", &CueList::cues, AnyObject{{{"$ref", "#/$defs/cues"}}}, "As the state's `cues`.");
 }
 
 // --- the queue of images

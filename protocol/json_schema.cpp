@@ -51,6 +51,7 @@ void add_server_messages(Json& defs) {
     add_server_message<Pointed>(defs, "pointed");
     add_server_message<Flown>(defs, "flown");
     add_server_message<TreePage>(defs, "tree");
+    add_server_message<Checked>(defs, "checked");
     add_server_message<SceneList>(defs, "scenes");
     add_server_message<SharedAddress>(defs, "shared");
     add_server_message<Loading>(defs, "loading");
@@ -126,6 +127,8 @@ std::string json_schema() {
     defs["feature"] = schema_of_struct<Feature>();
     defs["quality"] = schema_of_struct<Quality>();
     defs["view"] = schema_of_struct<Resize>();
+    defs["cueList"] = schema_of_struct<CueList>();
+    defs["cues"] = SharedTable<Entries<CueState>>{}.patch_schema();
     defs["levelTable"] = schema_of_struct<LevelTable>();
     defs["renderJob"] = schema_of_struct<RenderJob>();
     defs["frameHeader"] = schema_of_struct<FrameHeader>();

@@ -60,6 +60,8 @@ void for_each_client_type(Use use) {
     use(MessageTraits{"pick",          all,              by_content, true,  request}, Pick{});
     use(MessageTraits{"snapshot",      all,              no,         true,  request}, Snapshot{});
     use(MessageTraits{"fly",           control,          yes,        true,  request}, Fly{});
+    use(MessageTraits{"cue",           control,          yes,        true,  request}, Cue{});
+    use(MessageTraits{"check",         all,              no,         false, request}, Check{});
     use(MessageTraits{"tree",          all,              no,         true,  request}, Tree{});
     use(MessageTraits{"open",          control,          yes,        true,  request}, Open{});
     use(MessageTraits{"scenes",        all,              no,         true,  request}, Scenes{});

@@ -23,10 +23,12 @@ inline constexpr int kMaxDepth = 32;
 inline constexpr int kMaxGrants = 2;
 /// Bytes of a client's name.
 inline constexpr std::size_t kMaxClientName = 100;
-inline constexpr std::size_t kMaxSceneName = 1000;  ///< bytes
-inline constexpr std::size_t kMaxScenes = 1000;     ///< in a list
-inline constexpr std::size_t kMaxChoices = 64;      ///< of a switch that tells of its children
-inline constexpr std::size_t kMaxLine = 64;         ///< points of a line that measures are drawn with
+inline constexpr std::size_t kMaxSceneName = 1000;   ///< bytes
+inline constexpr std::size_t kMaxCueText = 2000;     ///< bytes, for who speaks
+inline constexpr std::size_t kMaxCueProblems = 200;  ///< that are listed
+inline constexpr std::size_t kMaxScenes = 1000;      ///< in a list
+inline constexpr std::size_t kMaxChoices = 64;       ///< of a switch that tells of its children
+inline constexpr std::size_t kMaxLine = 64;          ///< points of a line that measures are drawn with
 /// Highest message id and revision: 2^53 - 1, exact in JSON.
 inline constexpr std::int64_t kMaxInteger = (std::int64_t{1} << 53) - 1;
 
@@ -186,6 +188,7 @@ struct Snapshot {
     int width = 0, height = 0;
     ImageFormat format = ImageFormat::jpeg;
     int jpeg_quality = 90;
+    std::optional<std::string> cue;  ///< as it would look; none: as things stand
     CameraOverlay camera;
     RendererOverlay renderer;
 };
@@ -198,6 +201,17 @@ struct Fly {
     };
     std::vector<Keyframe> keyframes;
     Easing easing = Easing::smooth;
+};
+
+/// Shows a cue: the one of this name, or so many after the one that was shown last.
+struct Cue {
+    std::optional<std::string> name;  ///< either this
+    std::optional<int> step;          ///< or this
+};
+
+/// Finds out what of a list of cues does not go with the scene.
+struct Check {
+    std::shared_ptr<const nlohmann::json> cues;
 };
 
 /// A page of the scene's tree.
@@ -237,7 +251,7 @@ struct Share {
 struct ClientMessage {
     std::optional<std::int64_t> id;
     std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Navigate, Fit, Swing, Patch, Pick, Snapshot,
-                 Fly, Tree, Open, Scenes, Record, Control, Shown, Share, Point>
+                 Fly, Tree, Open, Scenes, Record, Control, Shown, Share, Point, Cue, Check>
         payload;
     std::string text = {};  ///< as it came over the wire; empty where it did not
 };
@@ -339,6 +353,17 @@ struct TreePage {
     std::optional<std::int64_t> next;  ///< `after` for the page that follows; none: this was the last
 };
 
+/// What of a list of cues does not go with the scene.
+struct Checked {
+    struct Problem {
+        std::optional<std::string> cue;  ///< none: the whole list
+        std::string message;
+        bool operator==(const Problem&) const = default;
+    };
+    std::int64_t id = 0;
+    std::vector<Problem> problems;
+};
+
 struct SceneList {
     std::int64_t id = 0;
     std::vector<std::string> scenes;  ///< names for `open`, sorted
@@ -389,13 +414,14 @@ inline constexpr std::array all{scene,     software,    not_kept,  unusable_chan
 namespace error_code {
 inline constexpr const char *bad_message = "bad-message", *out_of_range = "out-of-range",
                             *unknown_member = "unknown-member", *read_only = "read-only",
-                            *unknown_node = "unknown-node", *unknown_frame = "unknown-frame",
-                            *stale_revision = "stale-revision", *not_in_control = "not-in-control",
-                            *not_allowed = "not-allowed", *refused_scene = "refused-scene", *busy = "busy",
-                            *too_many = "too-many", *failed = "failed";
-inline constexpr std::array all{bad_message,   out_of_range,   unknown_member, read_only,   unknown_node,
-                                unknown_frame, stale_revision, not_in_control, not_allowed, refused_scene,
-                                busy,          too_many,       failed};
+                            *unknown_node = "unknown-node", *unknown_cue = "unknown-cue",
+                            *unknown_frame = "unknown-frame", *stale_revision = "stale-revision",
+                            *not_in_control = "not-in-control", *not_allowed = "not-allowed",
+                            *refused_scene = "refused-scene", *busy = "busy", *too_many = "too-many",
+                            *failed = "failed";
+inline constexpr std::array all{bad_message,   out_of_range,  unknown_member, read_only,      unknown_node,
+                                unknown_cue,   unknown_frame, stale_revision, not_in_control, not_allowed,
+                                refused_scene, busy,          too_many,       failed};
 }  // namespace error_code
 
 // --- of a frame, and what is measured of frames

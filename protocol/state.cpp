@@ -21,51 +21,112 @@ void check_key(const std::string& key, const char* path, const SharedMap<Item>& 
                       "'" + std::string(path) + "': there is no '" + excerpt(key) + "'"};
 }
 
-/// Those that a patch may give any length get their own.
-void check_sections(State& state) {
-    auto sections = *state.sections;
+/// Normals that a patch may give any length get their own. `path`: of what the two are in.
+void check_sections(SharedMap<SectionState>& shared, const SectionBoxState& box, const std::string& path) {
+    auto sections = *shared;
     for (auto& [name, section] : sections) {
         const double largest =
             std::max({std::abs(section.normal.x), std::abs(section.normal.y), std::abs(section.normal.z)});
         if (largest == 0)
-            throw BadJson{error_code::out_of_range,
-                          "'sections." + excerpt(name) + ".normal' is [0, 0, 0]: it must lead somewhere"};
+            throw BadJson{error_code::out_of_range, "'" + path + "sections." + excerpt(name) +
+                                                        ".normal' is [0, 0, 0]: it must lead somewhere"};
         const glm::dvec3 scaled = section.normal / largest;
         // A unit one stays as it is, to the last bit.
         const double length = glm::length(scaled) * largest;
         if (std::abs(length - 1) > 1e-15) section.normal = scaled / glm::length(scaled);
     }
-    state.sections.set(std::move(sections));
+    shared.set(std::move(sections));
     for (int axis = 0; axis < 3; ++axis)
-        if (!(state.section_box.min[axis] < state.section_box.max[axis]))
-            throw BadJson{error_code::out_of_range,
-                          "'sectionBox.min' must be below 'sectionBox.max' in each direction"};
+        if (!(box.min[axis] < box.max[axis]))
+            throw BadJson{error_code::out_of_range, "'" + path + "sectionBox.min' must be below '" + path +
+                                                        "sectionBox.max' in each direction"};
+}
+
+/// Of the state and of the cues that differ from those `before`.
+void check_sections(State& state, const SharedMap<CueState>& before) {
+    check_sections(state.sections, state.section_box, "");
+    if (state.cues == before) return;
+    auto cues = *state.cues;
+    std::size_t nodes = 0;
+    for (auto& [name, cue] : cues) {
+        check_sections(cue.sections, cue.section_box, "cues." + excerpt(name) + ".");
+        nodes += cue.nodes->size();
+    }
+    if (nodes > kMaxNodes)
+        throw BadJson{error_code::too_many, "the 'nodes' of all cues hold " + std::to_string(kMaxNodes) +
+                                                " entries at most together"};
+    state.cues.set(std::move(cues));
+}
+
+/// What entries of a patch do not say, or give as null, is that of `saved`.
+template <class T>
+void save_present(const Json& entries, const T& saved, SharedMap<T>& starting, SharedMap<T>& present) {
+    auto at_start = *starting, now = *present;
+    for (const auto& [name, value] : entries.items()) {
+        if (!value.is_object() || starting->contains(name)) continue;
+        if (name.empty() || at_start.size() > kMaxEntries) continue;  // to be refused
+        at_start[name] = saved;
+        now.try_emplace(name, saved);
+    }
+    starting.set(std::move(at_start));
+    present.set(std::move(now));
+}
+
+CueState cue_of(const State& state) {
+    const CameraState& camera = state.camera;
+    CueState cue;
+    cue.camera = {camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+    cue.lights.active = state.lights.active;
+    cue.backgrounds = {state.backgrounds.active, state.backgrounds.color};
+    cue.selection.node = state.selection.node;
+    cue.nodes = state.nodes;
+    cue.sections = state.sections;
+    cue.section_box = state.section_box;
+    return cue;
+}
+
+/// New cues, less the tables and the selection that the patch gives: those are to be what it says alone.
+SharedMap<CueState>::Map without_given(const Json& patch, SharedMap<CueState>::Map cues,
+                                       const SharedMap<CueState>::Map& before) {
+    for (const auto& [name, value] : patch.items()) {
+        const auto found = cues.find(name);
+        if (found == cues.end() || before.contains(name)) continue;
+        const auto is_given = [&value = value](const char* member) {
+            const auto given = value.find(member);
+            return given != value.end() && given->is_object();
+        };
+        CueState& cue = found->second;
+        if (is_given("nodes")) cue.nodes = {};
+        if (is_given("sections")) cue.sections = {};
+        if (is_given("selection")) cue.selection = {};
+    }
+    return cues;
 }
 
 State patched_or_throw(const State& state, const State& starting, const Json& patch) {
-    State result = state;
-    std::optional<State> start;
-    // What a view that is saved does not say, or gives as null, is the present camera's.
-    if (const auto views = patch.find("views"); views != patch.end() && views->is_object()) {
+    State result = state, start = starting;
+    const auto section = [&](const char* name) -> const Json* {
+        const auto found = patch.find(name);
+        return found != patch.end() && found->is_object() ? &*found : nullptr;
+    };
+    if (const Json* views = section("views")) {
         CameraState camera = state.camera;
-        if (const auto named = patch.find("camera"); named != patch.end() && named->is_object())
-            patch_struct(camera, starting.camera, *named, "camera");
-        const ViewState saved{camera.eye, camera.focus, camera.up, camera.center, camera.fov, {}};
-        auto at_start = *starting.views, present = *state.views;
-        for (const auto& [name, value] : views->items()) {
-            if (!value.is_object() || starting.views->contains(name)) continue;
-            if (name.empty() || at_start.size() > kMaxEntries) continue;  // to be refused
-            at_start[name] = saved;
-            present.try_emplace(name, saved);
-        }
-        start = starting;
-        start->views.set(std::move(at_start));
-        result.views.set(std::move(present));
+        if (const Json* named = section("camera")) patch_struct(camera, starting.camera, *named, "camera");
+        save_present(*views, {camera.eye, camera.focus, camera.up, camera.center, camera.fov, {}},
+                     start.views, result.views);
     }
-    patch_struct(result, start ? *start : starting, patch, "");
+    if (const Json* cues = section("cues")) {
+        State shown = result;
+        Json others = patch;
+        others.erase("cues");
+        patch_struct(shown, start, others, "");
+        save_present(*cues, cue_of(shown), start.cues, result.cues);
+        result.cues.set(without_given(*cues, *result.cues, *state.cues));
+    }
+    patch_struct(result, start, patch, "");
     check_key(result.lights.active, "lights.active", result.lights.items);
     check_key(result.backgrounds.active, "backgrounds.active", result.backgrounds.items, "color");
-    check_sections(result);
+    check_sections(result, state.cues);
     return result;
 }
 
@@ -104,7 +165,13 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
         restore_struct(state, document, "");
         check_key(state.lights.active, "lights.active", state.lights.items);
         check_key(state.backgrounds.active, "backgrounds.active", state.backgrounds.items, "color");
-        check_sections(state);
+        check_sections(state, starting.cues);
+        if (const auto cue = document.find("cue"); cue != document.end()) {
+            const std::string name = kName.read(read_object(*cue, "cue").value("name", Json()), "cue.name");
+            if (!state.cues->contains(name))
+                throw BadJson{error_code::unknown_cue, "'cue.name': there is no cue '" + excerpt(name) + "'"};
+            state.cue = ShownCueState{name};
+        }
         if (const auto control = document.find("control"); control != document.end()) {
             if (control->contains("holder"))
                 state.control.holder = kName.read((*control)["holder"], "holder");
@@ -124,7 +191,7 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
 std::string kept_changes(const State& starting, const State& state) {
     Json changes = Json::object();
     const auto from = document_of(starting), to = document_of(state);
-    for (const char* section : {"views", "markers", "measures", "unit", "nodes"}) {
+    for (const char* section : {"views", "markers", "measures", "unit", "cues", "nodes"}) {
         Json diff = merge_diff(from->at(section), to->at(section));
         if (!diff.empty()) changes[section] = std::move(diff);
     }

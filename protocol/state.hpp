@@ -199,6 +199,47 @@ struct ViewState {
     bool operator==(const ViewState&) const = default;
 };
 
+/// What is shown at one point of a presentation, and how it comes to that. The members that have names of the
+/// state's sections are to be what those are then.
+struct CueState {
+    struct Camera {
+        glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
+        double fov = 40;
+        bool operator==(const Camera&) const = default;
+    };
+    struct Lights {
+        std::string active = "headlight";
+        bool operator==(const Lights&) const = default;
+    };
+    struct Backgrounds {
+        std::string active = "color";
+        glm::dvec4 color{1};
+        bool operator==(const Backgrounds&) const = default;
+    };
+    struct Selection {
+        std::optional<std::int64_t> node;
+        bool operator==(const Selection&) const = default;
+    };
+    std::optional<double> order = {};  ///< as ViewState's
+    std::string text;                  ///< for who speaks
+    double ms = 1500;                  ///< how long the camera and what has a hinge are on their way
+    Fly::Easing easing = Fly::Easing::smooth;
+    Camera camera;
+    Lights lights;
+    Backgrounds backgrounds;
+    Selection selection;
+    SharedMap<NodeOverride> nodes;
+    SharedMap<SectionState> sections;
+    SectionBoxState section_box;
+    bool operator==(const CueState&) const = default;
+};
+
+/// The cue that was shown last.
+struct ShownCueState {  // r
+    std::string name;
+    bool operator==(const ShownCueState&) const = default;
+};
+
 struct QualityState {
     double preference = 0.5;  ///< 0 speed, 1 accuracy
     double latency_target_ms = 50;
@@ -263,6 +304,8 @@ struct State {
     SharedMap<MeasureState> measures;
     SharedMap<MeasuredState> measured;  // r: by the measure's name
     UnitState unit;
+    SharedMap<CueState> cues;
+    std::optional<ShownCueState> cue;  // r
     QualityState quality;
     PointingState pointing;
     ControlState control;
@@ -274,27 +317,29 @@ struct State {
 
 /// Most markers, most views and most measures.
 inline constexpr std::size_t kMaxEntries = 256;
+/// Most cues.
+inline constexpr std::size_t kMaxCues = 100;
 /// Most planes of sections.
 inline constexpr std::size_t kMaxSections = 6;
 /// Most clients that the state names; `stats` counts all.
 inline constexpr std::size_t kMaxListedClients = 64;
 /// Most notices of the server; older ones are forgotten.
 inline constexpr std::size_t kMaxNotices = 16;
-/// Most nodes that differ from the file.
+/// Most nodes that differ from the file; likewise in all cues together.
 inline constexpr std::size_t kMaxNodes = 10'000;
 /// Coordinates of positions go so far either way: products of two stay finite.
 inline constexpr double kFarthest = 1e30;
 
 /// `state` after a merge patch (RFC 7396) of its members, or what is wrong with it: all or nothing. null
-/// gives a member back the value it has in `starting`, and removes entries of `nodes`, `markers`, `views` and
-/// `measures` that are not there. Checks types, ranges and names of members; what needs the scene is the
-/// caller's.
+/// gives a member back the value it has in `starting`, and removes entries of `nodes`, `markers`, `views`,
+/// `measures` and `cues` that are not there. Checks types, ranges and names of members; what needs the scene
+/// is the caller's.
 tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
 /// A patch from the text of a JSON object.
 tl::expected<Patch, Error> parse_patch(std::string_view text);
 
 /// The text of the patch that leads from `starting` to what is kept of a scene in `state`: its views,
-/// markers, measures, unit and nodes. "{}" where they are the same.
+/// markers, measures, unit, cues and nodes. "{}" where they are the same.
 std::string kept_changes(const State& starting, const State& state);
 
 /// The document of a state, as clients see it.

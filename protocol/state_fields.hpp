@@ -248,4 +248,13 @@ struct SharedTable {
     Json patch_schema() const { return kind.patch_schema(); }
 };
 
+/// A member of an entry that starts with what is shown: null removes what is in the member.
+template <class Kind>
+struct FromNothing : Kind {
+    template <class T>
+    void patch(T& target, const T&, const Json& json, const std::string& path) const {
+        Kind::patch(target, T{}, json, path);
+    }
+};
+
 }  // namespace vrut::protocol

@@ -157,6 +157,8 @@ public:
     std::vector<PictureOrder> take_orders() { return std::exchange(orders_, {}); }
     /// What is to be sent to all clients: the newest of each that points, or has pointed.
     std::vector<protocol::Pointed> take_pointed();
+    /// What of a list of cues does not go with the scene: `list` is as in its file.
+    std::vector<protocol::Checked::Problem> check_cues(const nlohmann::json& list) const;
     /// The present view in another size, for whoever is no client.
     PictureOrder order(int width, int height);
 
@@ -214,6 +216,8 @@ private:
     void apply(const Received& received, const protocol::Pick& pick);
     void apply(const Received& received, const protocol::Snapshot& snapshot);
     void apply(const Received& received, const protocol::Fly& fly);
+    void apply(const Received& received, const protocol::Cue& cue);
+    void apply(const Received& received, const protocol::Check& check);
     void apply(const Received& received, const protocol::Tree& tree);
     void apply(const Received& received, const protocol::Open& open);
     void apply(const Received& received, const protocol::Scenes& scenes);
@@ -343,6 +347,18 @@ private:
                                               const protocol::NamedCameraMembers& named);
     std::optional<protocol::Error> use_views(protocol::State& next, const scene::PlacedScene& placed) const;
     std::optional<protocol::Error> check_names(const protocol::State& next) const;
+
+    // --- cues
+    /// The name of the cue that a message names; none: the message is rejected.
+    std::optional<std::string> cue_named(const Received& received, const protocol::Cue& cue);
+    /// Brings changed cues of a patch in line with the scene, or what is wrong with them.
+    std::optional<protocol::Error> use_cues(protocol::State& next) const;
+    /// What is shown stays that, or its new name, or the one before it.
+    void keep_shown_cue(protocol::State& next) const;
+    /// What has a hinge goes from where it stands in the cue's `ms` to where it stands in `next`, whose nodes
+    /// begin there.
+    void swing_to_cue(const protocol::CueState& cue, protocol::State& next);
+    void fly_to_cue(const Received& received, const protocol::CueState& cue);
 
     // --- recordings
     void start_recording(const Received& received, const std::string& name);

@@ -27,6 +27,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
     if (!error) error = check_measures(*next);
+    if (!error) error = use_cues(*next);
     if (error) return reject(received, error->code.c_str(), error->message);
 
     const protocol::ViewState home = state_.views->at("home");
@@ -37,6 +38,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
     next->control = state_.control;
+    keep_shown_cue(*next);
     end_swings_of(*next);
     state_ = *std::move(next);
     scene_ = std::move(placed);
@@ -50,9 +52,10 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
 std::optional<Error> Room::use_changes() {
     const auto patch = protocol::parse_patch(loaded_.changes);
     if (!patch) return patch.error();
-    if (!protocol::names_only(*patch->patch, {"views", "markers", "measures", "unit", "nodes"}))
-        return Error{
-            {}, code::bad_message, "it names other members than views, markers, measures, unit and nodes"};
+    if (!protocol::names_only(*patch->patch, {"views", "markers", "measures", "unit", "cues", "nodes"}))
+        return Error{{},
+                     code::bad_message,
+                     "it names other members than views, markers, measures, unit, cues and nodes"};
     auto next = protocol::patched(state_, starting_, *patch->patch);
     if (!next) return next.error();
     std::shared_ptr<const scene::PlacedScene> placed = scene_;
@@ -60,6 +63,7 @@ std::optional<Error> Room::use_changes() {
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
     if (!error) error = check_measures(*next);
+    if (!error) error = use_cues(*next);
     if (error) return error;
     state_ = *std::move(next);
     scene_ = std::move(placed);

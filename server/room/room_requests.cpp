@@ -3,6 +3,7 @@
 
 #include "codec.hpp"
 #include "navigation/camera_moves.hpp"
+#include "room/cues.hpp"
 #include "room/room.hpp"
 #include "room/scene_tree.hpp"
 
@@ -20,6 +21,7 @@ void Room::answer_with(const Received& received, const Message& message) {
     answers_.push_back({received.client, protocol::encode(answer), document()->revision()});
 }
 template void Room::answer_with(const Received&, const protocol::Picked&);
+template void Room::answer_with(const Received&, const protocol::Checked&);
 template void Room::answer_with(const Received&, const protocol::SceneList&);
 template void Room::answer_with(const Received&, const protocol::SharedAddress&);
 
@@ -64,18 +66,31 @@ void Room::apply(const Received& received, const protocol::Fly& fly) {
 // --- pictures and the tree
 
 void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
-    auto laid = overlaid(camera(), snapshot.camera, *scene_, "camera");
-    if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);
     protocol::State state = state_;
-    if (*laid != camera()) state.camera = state_of(*laid, scene_->bounds);
+    std::shared_ptr<const scene::PlacedScene> placed = scene_;
+    if (snapshot.cue) {
+        const auto cue = state_.cues->find(*snapshot.cue);
+        if (cue == state_.cues->end())
+            return reject(received, code::unknown_cue, "there is no cue '" + *snapshot.cue + "'");
+        lay_cue(cue->second, state);
+        if (const auto error = use_nodes(state, placed))
+            return reject(received, error->code.c_str(), error->message);
+        state.camera = state_of(camera_of(cue->second), placed->bounds);
+    }
+    auto laid = overlaid(camera_of(state.camera), snapshot.camera, *placed, "camera");
+    if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);
+    if (*laid != camera_of(state.camera)) state.camera = state_of(*laid, placed->bounds);
     protocol::RendererState& renderer = state.renderer;
     renderer.mode = snapshot.renderer.mode.value_or(renderer.mode);
     renderer.wireframe = snapshot.renderer.wireframe.value_or(renderer.wireframe);
     renderer.show_selection = snapshot.renderer.show_selection.value_or(renderer.show_selection);
     accepted_ = true;
     if (!received.message.id) return;  // nobody could tell the picture from a frame
-    plan::View view = view_of(state, scene_);
+    plan::View view = view_of(state, placed);
     view.markers = visible_.markers;
+    if (placed != scene_)
+        view.markers =
+            std::make_shared<const std::vector<plan::PlacedMarker>>(markers_of(*state_.markers, *placed));
     view.width = snapshot.width;
     view.height = snapshot.height;
     PictureOrder order{received.client, view, header_of(state, view, view_size_), snapshot.format,

@@ -1,9 +1,7 @@
 // Doors, bonnets and lids: what turns about a hinge, by a message or a tap.
 #include <algorithm>
-#include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
-#include <numbers>
 
+#include "room/hinges.hpp"
 #include "room/room.hpp"
 
 namespace vrut::server::room {
@@ -14,29 +12,6 @@ namespace {
 
 const scene::Node& at(const scene::PlacedScene& placed, scene::Index node) {
     return placed.scene->nodes()[static_cast<std::size_t>(node)];
-}
-
-/// A node's matrix with its hinge opened by a part.
-glm::dmat4 opened(const scene::Node& node, double part) {
-    const double radians = part * node.hinge->degrees * scene::kRadiansPerDegree;
-    return node.matrix * glm::rotate(glm::dmat4(1), radians, scene::unit_axis(*node.hinge));
-}
-
-/// By which part a hinge stands open, from 0 to 1, if its matrix is one of opened().
-double opened_part(const scene::Node& node, const glm::dmat4& matrix) {
-    const double whole = node.hinge->degrees * scene::kRadiansPerDegree;
-    if (whole == 0 || matrix == node.matrix) return 0;
-    const glm::dvec3 axis = scene::unit_axis(*node.hinge);
-    const glm::dvec3 sizes = glm::abs(axis);
-    const bool along_x = sizes.x <= std::min(sizes.y, sizes.z);
-    const glm::dvec3 across = glm::normalize(glm::cross(
-        axis, along_x ? glm::dvec3(1, 0, 0) : glm::dvec3(0, sizes.y < sizes.z, sizes.y >= sizes.z)));
-    const glm::dvec3 turned(glm::inverse(node.matrix) * matrix * glm::dvec4(across, 0));
-    double radians = std::atan2(glm::dot(turned, glm::cross(axis, across)), glm::dot(turned, across));
-    if (radians * whole < 0 && std::abs(whole) > std::numbers::pi)
-        radians += std::copysign(2 * std::numbers::pi, whole);
-    const double part = radians / whole;
-    return std::isfinite(part) ? std::clamp(part, 0.0, 1.0) : 0;
 }
 
 }  // namespace

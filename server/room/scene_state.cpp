@@ -82,7 +82,8 @@ protocol::Shared<protocol::Names> material_names(const scene::Scene& scene) {
     return {std::make_shared<const protocol::Names>(std::move(names))};
 }
 
-/// A node by its id as a member's name; kNone where there is none.
+}  // namespace
+
 scene::Index find_node(const scene::Scene& scene, const std::string& key) {
     scene::Id id = -1;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), id);
@@ -90,6 +91,8 @@ scene::Index find_node(const scene::Scene& scene, const std::string& key) {
         error == std::errc() && end == key.data() + key.size() && std::to_string(id) == key;
     return canonical ? scene.find_node(id) : scene::kNone;
 }
+
+namespace {
 
 scene::Index find_material(const scene::Scene& scene, scene::Id id) {
     const auto& materials = scene.materials();
@@ -289,19 +292,36 @@ tl::expected<navigation::CameraPath, Error> flight_path(const protocol::Fly& fly
     return navigation::CameraPath(from, keyframes, static_cast<navigation::Easing>(fly.easing));
 }
 
+namespace {
+
+/// Into the states, or what is wrong with it.
+std::optional<Error> apply(const std::string& key, protocol::NodeOverride& change, const scene::Scene& scene,
+                           std::vector<scene::NodeState>& states) {
+    const scene::Index index = find_node(scene, key);
+    if (index == scene::kNone)
+        return Error{{}, code::unknown_node, "'nodes': there is no node " + key.substr(0, 40)};
+    const auto place = static_cast<std::size_t>(index);
+    return apply(change, scene, scene.nodes()[place], states[place]);
+}
+
+}  // namespace
+
+std::vector<Error> node_problems(const scene::Scene& scene,
+                                 const protocol::SharedMap<protocol::NodeOverride>& overrides) {
+    std::vector<scene::NodeState> states = scene::file_states(scene);
+    std::vector<Error> problems;
+    auto changes = *overrides;
+    for (auto& [key, change] : changes)
+        if (auto error = apply(key, change, scene, states)) problems.push_back(*std::move(error));
+    return problems;
+}
+
 tl::expected<std::vector<scene::NodeState>, Error> node_states(
     const scene::Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides) {
     std::vector<scene::NodeState> states = scene::file_states(scene);
     auto changes = *overrides;
-    for (auto& [key, change] : changes) {
-        const scene::Index index = find_node(scene, key);
-        if (index == scene::kNone)
-            return tl::unexpected(
-                Error{{}, code::unknown_node, "'nodes': there is no node " + key.substr(0, 40)});
-        const auto place = static_cast<std::size_t>(index);
-        if (auto error = apply(change, scene, scene.nodes()[place], states[place]))
-            return tl::unexpected(*std::move(error));
-    }
+    for (auto& [key, change] : changes)
+        if (auto error = apply(key, change, scene, states)) return tl::unexpected(*std::move(error));
     std::erase_if(changes, [](const auto& entry) { return entry.second == protocol::NodeOverride{}; });
     overrides.set(std::move(changes));
     return states;

@@ -51,6 +51,9 @@ tl::expected<navigation::CameraPath, protocol::Error> flight_path(const protocol
                                                                   const scene::Camera& from,
                                                                   const scene::PlacedScene& placed);
 
+/// A node by its id as a member's name; kNone where there is none.
+scene::Index find_node(const scene::Scene& scene, const std::string& key);
+
 /// How many of its nodes are solid, transparent and reflective, into the state.
 void count_classes(protocol::State& state, const scene::PlacedScene& placed);
 
@@ -58,6 +61,10 @@ void count_classes(protocol::State& state, const scene::PlacedScene& placed);
 /// disappears from `overrides`.
 tl::expected<std::vector<scene::NodeState>, protocol::Error> node_states(
     const scene::Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides);
+
+/// All that is wrong with `overrides`, an error for each node.
+std::vector<protocol::Error> node_problems(const scene::Scene& scene,
+                                           const protocol::SharedMap<protocol::NodeOverride>& overrides);
 
 /// The signs of `markers`, in world space; of those whose node shows and that lie within the range of double.
 std::vector<plan::PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,

@@ -72,6 +72,8 @@ std::string reference(const std::string& name) {
         {"camera", "[camera](STATE.md#camera)"},
         {"cameraOverlay", "[camera members](CLIENT_MESSAGES.md#camera-members)"},
         {"clientMessage", "[client message](CLIENT_MESSAGES.md)"},
+        {"cueList", "[list of cues](CUES.md#as-a-file)"},
+        {"cues", "[cues](STATE.md#cues)"},
         {"feature", "[feature](STATE.md#features)"},
         {"notice", "[notice](STATE.md#notices)"},
         {"quality", "[quality](FRAMES.md#quality)"},

@@ -17,8 +17,9 @@ using nlohmann::json;
 
 namespace {
 
-const std::vector<std::string> kPages{"PROTOCOL.md", "CLIENT_MESSAGES.md", "SERVER_MESSAGES.md", "STATE.md",
-                                      "FRAMES.md",   "NAVIGATION.md",      "EVENT_LOG.md",       "LEVELS.md"};
+const std::vector<std::string> kPages{"PROTOCOL.md",  "CLIENT_MESSAGES.md", "SERVER_MESSAGES.md",
+                                      "STATE.md",     "FRAMES.md",          "NAVIGATION.md",
+                                      "EVENT_LOG.md", "LEVELS.md",          "CUES.md"};
 
 const json& schema_definitions() {
     static const json definitions = json::parse(json_schema())["$defs"];
@@ -146,6 +147,7 @@ TEST_CASE("the state document, its sections, the frame header, the event log and
     for (const json& reference : schema_definitions()["eventLogLine"]["oneOf"])
         check_table(log, reference["$ref"].get<std::string>().substr(8));
     check_table(text_of(kProtocol + "LEVELS.md"), "levelTable");
+    check_table(text_of(kProtocol + "CUES.md"), "cueList");
 }
 
 TEST_CASE("the pages tell every code of an error and of a notice") {

@@ -164,7 +164,7 @@ namespace {
 /// A member of the state: its place in a patch, and texts of what it may be, may not be by type, and may not
 /// be by value.
 struct Member {
-    const char* path;
+    std::string path;
     std::vector<const char*> good, wrong_type, out_of_range;
 };
 
@@ -182,7 +182,7 @@ const std::vector<const char*> kNoLightColor = {"[]", "[1,1,1]", "[1,1,1,1,1]", 
 const std::vector<const char*> kNoSpeed = {"0", "0.0099", "100.1", "-1"};
 const std::vector<const char*> kNoFov = {"0.999", "170.001", "-5"};
 
-const std::vector<Member> kMembers = {
+const std::vector<Member> kMembersOfSections = {
     {"/camera/node", {"0", "9007199254740991"}, kNoNumber, kNoId},
     {"/camera/eye", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
     {"/camera/focus", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
@@ -253,12 +253,42 @@ const std::vector<Member> kMembers = {
     {"/pointing/watchers", {"true", "false"}, kNoFlag, {}},
 };
 
+/// A cue's own, and those that are the same as in the state.
+std::vector<Member> members_of_cue() {
+    std::vector<Member> members = {
+        {"/cues/door/order", {"-1e9", "3.5"}, kNoNumber, {"1.1e9"}},
+        {"/cues/door/text", {"\"\"", "\"Téměř\""}, kNoText, {}},
+        {"/cues/door/ms", {"0", "60000"}, kNoNumber, {"-1", "60001"}},
+        {"/cues/door/easing", {"\"smooth\"", "\"linear\""}, kNoText, {"\"\"", "\"ease\""}},
+    };
+    const std::vector<std::string> same{
+        "/lights/active", "/backgrounds/active", "/backgrounds/color", "/selection/",
+        "/nodes/",        "/sections/",          "/sectionBox/"};
+    for (Member member : kMembersOfSections) {
+        const bool is_pose = member.path.starts_with("/views/home/") && member.path != "/views/home/order";
+        const bool is_same = std::ranges::any_of(
+            same, [&](const std::string& start) { return member.path.starts_with(start); });
+        if (!is_pose && !is_same) continue;
+        member.path = "/cues/door" + (is_pose ? "/camera" + member.path.substr(11) : member.path);
+        members.push_back(member);
+    }
+    return members;
+}
+
+const std::vector<Member> kMembers = [] {
+    std::vector<Member> members = kMembersOfSections;
+    const std::vector<Member> of_cue = members_of_cue();
+    members.insert(members.end(), of_cue.begin(), of_cue.end());
+    return members;
+}();
+
 const std::vector<const char*> kReadOnly = {"/scene",
                                             "/cameras",
                                             "/materials",
                                             "/control",
                                             "/recording",
                                             "/measured",
+                                            "/cue",
                                             "/notices",
                                             "/camera/name",
                                             "/camera/near",
@@ -275,7 +305,8 @@ const std::vector<const char*> kReadOnly = {"/scene",
 
 State with_entries() {
     return after(start(), R"({"markers":{"here":{"point":[1,2,3]}},"sections":{"cut":{"normal":[0,0,1]}},
-        "measures":{"gap":{"picks":[{"node":1,"snap":"point","points":[[1,2,3]]}]}}})");
+        "measures":{"gap":{"picks":[{"node":1,"snap":"point","points":[[1,2,3]]}]}},
+        "cues":{"door":{"sections":{"cut":{"normal":[0,0,1]}}}}})");
 }
 
 json patch_at(const std::string& path, const json& value) {
@@ -378,6 +409,12 @@ TEST_CASE("sections and entries are objects") {
                              "/measures",
                              "/measures/new",
                              "/unit",
+                             "/cues",
+                             "/cues/door",
+                             "/cues/new",
+                             "/cues/new/camera",
+                             "/cues/new/nodes",
+                             "/cues/new/selection",
                              "/quality"})
         for (const json& value : {json(1), json(true), json("x"), json::array()})
             check_refused(patch_at(path, value), "bad-message", dotted(path));
@@ -658,7 +695,7 @@ public:
             result = *taken;
         }
         // What the server itself changes.
-        switch (below(9)) {
+        switch (below(10)) {
             case 0:
                 result.recording = RecordingState{"log" + std::to_string(below(3))};
                 break;
@@ -683,9 +720,15 @@ public:
             case 7:
                 result.measured.set("n" + std::to_string(below(4)), {1.5, {{1, 0, 0}}, {{1, 2, 3}}, {}});
                 break;
+            case 8:
+                result.cue.reset();
+                if (!result.cues->empty()) result.cue = ShownCueState{result.cues->begin()->first};
+                break;
             default:
                 break;
         }
+        // As the room keeps it.
+        if (result.cue && !result.cues->contains(result.cue->name)) result.cue.reset();
         return result;
     }
 
@@ -699,7 +742,8 @@ private:
         if (below(4) == 0) {  // null at some level
             for (std::size_t up = below(3); up > 0 && path.rfind('/') != 0; --up) path.erase(path.rfind('/'));
             const bool of_new = path.starts_with("/markers/here/") || path.starts_with("/sections/cut/") ||
-                                path.starts_with("/measures/gap/");
+                                path.starts_with("/measures/gap/") ||
+                                path.starts_with("/cues/door/sections/");
             return of_new ? json::object() : patch_at(path, nullptr);
         }
         const std::string name = "n" + std::to_string(below(4));
@@ -711,6 +755,11 @@ private:
             const json pick = {
                 {"node", below(3)}, {"snap", "vertex"}, {"points", json::array({{1, 2, below(3)}})}};
             return {{"measures", {{name, {{"kind", "distance"}, {"picks", json::array({pick, pick})}}}}}};
+        }
+        if (path.starts_with("/cues/")) {
+            if (path.find("/sections/") == std::string::npos) return patch_at(path, json::parse(value));
+            const json section = {{"normal", {1, 0, below(3)}}, {"distance", below(3)}};
+            return {{"cues", {{name, {{"sections", {{"cut", section}}}, {"text", name}}}}}};
         }
         if (path.starts_with("/views/") && below(2) == 0) return {{"views", {{name, json::object()}}}};
         if (path.starts_with("/nodes/")) path.replace(7, 1, std::to_string(below(3)));
