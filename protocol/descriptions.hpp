@@ -201,6 +201,7 @@ void describe(V& v, const Checked*) {
     v.required("id", &Checked::id, kId, "Of the `check`.");
     v.required("problems", &Checked::problems, List<Object<Checked::Problem>>{{}, 0, kMaxCueProblems},
                "What does not go with the scene; empty: all of it does.");
+    v.required("fitting", &Checked::fitting, List<Text>{Text{100}, 0, kMaxCues}, "Names of the cues that do.");
 }
 
 template <class V>

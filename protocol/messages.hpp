@@ -362,6 +362,7 @@ struct Checked {
     };
     std::int64_t id = 0;
     std::vector<Problem> problems;
+    std::vector<std::string> fitting;  ///< names of the cues that have none
 };
 
 struct SceneList {

@@ -590,6 +590,24 @@ std::shared_ptr<Command> describe_compare(CompareArguments& arguments) {
     return command;
 }
 
+std::shared_ptr<Command> describe_cues(CuesArguments& arguments) {
+    auto command = std::make_shared<Command>("Check a list of cues against a scene.", "cues");
+    command->description = {
+        "A list of cues is the file of a presentation, which the page saves. The command prints a sentence "
+        "for each node, light, background or value in it that does not go with the scene."};
+    command->add_option("ACTION", arguments.action, "What to do: check.")
+        ->required()
+        ->check(CLI::IsMember({"check"}));
+    add_file(*command, "LIST", arguments.list, "The list of cues.")->required();
+    add_file(*command, "SCENE", arguments.scene, "The scene that it is for.")->required();
+    add_reading(*command, arguments.read);
+    command->exit_statuses = statuses("All of the list goes with the scene.",
+                                      "The command line is wrong, as where ACTION is not check.");
+    command->examples = {{"vrut-preview cues check my-cues.json my.glb", "Print what would go wrong."}};
+    command->callback([&arguments] { cues_command(arguments); });
+    return command;
+}
+
 CLI::Option* add_glass(Command& command, ChartArguments& arguments) {
     auto* glass = command
                       .add_option("--glass", arguments.sessions,
@@ -718,6 +736,7 @@ std::shared_ptr<Command> describe_program(Arguments& arguments) {
     program->add_subcommand(describe_info(arguments.info));
     program->add_subcommand(describe_convert(arguments.convert));
     program->add_subcommand(describe_compare(arguments.compare));
+    program->add_subcommand(describe_cues(arguments.cues));
     program->add_subcommand(describe_chart(arguments.chart));
     return program;
 }

@@ -20,6 +20,7 @@ struct Arguments {
     InfoArguments info;
     ConvertArguments convert;
     CompareArguments compare;
+    CuesArguments cues;
     ChartArguments chart;
 };
 

@@ -103,6 +103,15 @@ struct CompareArguments {
 };
 void compare_command(const CompareArguments& arguments);
 
+/// What of a list of cues does not go with a scene.
+struct CuesArguments {
+    std::string action;  ///< "check", the only one
+    std::filesystem::path list, scene;
+    io::ReadOptions read = kShown;
+};
+/// Throws std::runtime_error where there is anything.
+void cues_command(const CuesArguments& arguments);
+
 struct ChartArguments {
     std::vector<std::filesystem::path> scenes;  ///< empty: the car
     io::ReadOptions read = kShown;

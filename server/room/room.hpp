@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cue_list.hpp"
 #include "event_log.hpp"
 #include "frame_header.hpp"
 #include "measurement/mesh_edges.hpp"
@@ -158,7 +159,9 @@ public:
     /// What is to be sent to all clients: the newest of each that points, or has pointed.
     std::vector<protocol::Pointed> take_pointed();
     /// What of a list of cues does not go with the scene: `list` is as in its file.
-    std::vector<protocol::Checked::Problem> check_cues(const nlohmann::json& list) const;
+    protocol::Checked check_cues(const nlohmann::json& list) const;
+    /// The same of the file's text.
+    protocol::Checked check_cues(const std::string& text) const;
     /// The present view in another size, for whoever is no client.
     PictureOrder order(int width, int height);
 
@@ -358,6 +361,7 @@ private:
     /// What has a hinge goes from where it stands in the cue's `ms` to where it stands in `next`, whose nodes
     /// begin there.
     void swing_to_cue(const protocol::CueState& cue, protocol::State& next);
+    protocol::Checked checked(const tl::expected<protocol::ReadCueList, protocol::Error>& list) const;
     void fly_to_cue(const Received& received, const protocol::CueState& cue);
 
     // --- recordings

@@ -1,7 +1,6 @@
 // Cues: what a presentation shows, one after the other.
 #include <algorithm>
 
-#include "cue_list.hpp"
 #include "room/cues.hpp"
 #include "room/hinges.hpp"
 #include "room/room.hpp"
@@ -118,26 +117,33 @@ void Room::keep_shown_cue(protocol::State& next) const {
     }
 }
 
-std::vector<protocol::Checked::Problem> Room::check_cues(const nlohmann::json& json) const {
-    const auto list = protocol::read_cue_list(json, starting_);
-    if (!list) return {{{}, list.error().message}};
-    std::vector<protocol::Checked::Problem> problems;
+protocol::Checked Room::check_cues(const nlohmann::json& list) const {
+    return checked(protocol::read_cue_list(list, starting_));
+}
+
+protocol::Checked Room::check_cues(const std::string& text) const {
+    return checked(protocol::parse_cue_list(text, starting_));
+}
+
+protocol::Checked Room::checked(const tl::expected<protocol::ReadCueList, Error>& list) const {
+    if (!list) return {0, {{{}, list.error().message}}, {}};
+    protocol::Checked checked;
     if (const std::string& file = starting_.scene.value->file; !list->scene.empty() && list->scene != file)
-        problems.push_back({{}, "the list was made for '" + list->scene + "', and this is '" + file + "'"});
+        checked.problems.push_back(
+            {{}, "the list was made for '" + list->scene + "', and this is '" + file + "'"});
     for (const auto& [name, cue] : list->cues) {
-        if (!cue) {
-            problems.push_back({name, cue.error().message});
-            continue;
-        }
-        for (const Error& error : problems_of(name, *cue, starting_, *scene_))
-            problems.push_back({name, error.message});
+        const std::vector<Error> errors =
+            cue ? problems_of(name, *cue, starting_, *scene_) : std::vector<Error>{cue.error()};
+        for (const Error& error : errors) checked.problems.push_back({name, error.message});
+        if (errors.empty()) checked.fitting.push_back(name);
     }
-    if (problems.size() > protocol::kMaxCueProblems) problems.resize(protocol::kMaxCueProblems);
-    return problems;
+    if (checked.problems.size() > protocol::kMaxCueProblems)
+        checked.problems.resize(protocol::kMaxCueProblems);
+    return checked;
 }
 
 void Room::apply(const Received& received, const protocol::Check& check) {
-    answer_with(received, protocol::Checked{0, check_cues(*check.cues)});
+    answer_with(received, check_cues(*check.cues));
 }
 
 }  // namespace vrut::server::room

@@ -78,7 +78,7 @@ test('what cannot be done is told with status 1, by every command', () => {
   const none = path.join(folder, 'none.vrut');
   const calls = {
     serve: [none], edge: ['--nats', 'nats://127.0.0.1', '--token-file', none], render: [none, '-o', 'x.png'], worker: ['--nats', 'nats://127.0.0.1', '--scenes', none], replay: [none], info: [none], convert: [none, 'x.glb'],
-    compare: [none, none], chart: [none, '--calibrate'],
+    compare: [none, none], cues: ['check', none, none], chart: [none, '--calibrate'],
   };
   assert.deepEqual(Object.keys(calls), commands());
   for (const [command, options] of Object.entries(calls)) {

@@ -23,7 +23,7 @@ test('what a server needs is installed, and nothing else', () => {
   const expected = [
     'bin/vrut-preview', ...['vrut-preview', 'vrut-preview-edge'].map((name) => `lib/systemd/system/${name}.service`),
     'share/bash-completion/completions/vrut-preview',
-    ...['', '-serve', '-edge', '-render', '-worker', '-replay', '-info', '-convert', '-compare', '-chart'].map((command) => `share/man/man1/vrut-preview${command}.1`),
+    ...['', '-serve', '-edge', '-render', '-worker', '-replay', '-info', '-convert', '-compare', '-cues', '-chart'].map((command) => `share/man/man1/vrut-preview${command}.1`),
     ...['CHANGELOG.md', 'README.md', 'copyright', 'haproxy-edges.cfg', 'haproxy.cfg', 'nats.conf', 'watchers.svg'].map((name) => `share/doc/vrut-preview/${name}`),
     ...['README.md', 'car/car.vrut'].map((name) => `share/vrut-preview/scenes/${name}`),
     ...files(path.join(scenes, 'car/textures')).map((name) => `share/vrut-preview/scenes/car/textures/${name}`),

@@ -155,6 +155,7 @@ test('each script tells its usage', async () => {
   assert.match(await succeeds(python('door.py', '--help')), /--open/);
   assert.match(await succeeds(python('sweep.py', '--help')), /--normal/);
   assert.match(await succeeds(python('gaps.py', '--help')), /--second/);
+  assert.match(await succeeds(python('show_cues.py', '--help')), /--hold/);
   assert.match(await succeeds(snapshot('--help')), /--camera/);
   assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
   assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
@@ -164,7 +165,7 @@ test('each script tells its usage', async () => {
 });
 
 test('a wrong token is told in a sentence', async () => {
-  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []], ['gaps.py', []]]) {
+  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []], ['gaps.py', []], ['show_cues.py', []]]) {
     const result = await python(script, ...args, '--token', 'guess');
     assert.equal(result.status, 1);
     assert.equal(result.stderr, `${script}: the token is wrong\n`);
@@ -196,6 +197,22 @@ test('orbit.py saves the views of a whole turn, told the address as it is printe
     const turn = (directions[i - 1] - directions[i] + 360) % 360;
     assert.ok(Math.abs(turn - 120) < 1e-9, `turned by ${turn}`);
   }
+});
+
+test('show_cues.py shows a list, saves a picture of each cue, and takes the list away again', async () => {
+  const cues = {
+    'All doors': { order: 2, ms: 10, camera: { eye: [4, 2, 5], focus: [0, 0.7, 0] }, nodes: { 101: { active: false } } },
+    Arrival: { order: 1, ms: 0 },
+    Lost: { order: 3, selection: { node: 9_999_999 } },
+  };
+  fs.writeFileSync(file('cues.json'), JSON.stringify({ format: 'vrut-preview-cues', version: 1, cues }));
+  const seen = watcher.revision;
+  const printed = await succeeds(python('show_cues.py', file('cues.json'), '--size', '320x200', '--out', 'cues'));
+  assert.match(printed, /there is no node 9999999/);
+  assert.deepEqual(fs.readdirSync(file('cues')).sort(), ['01-Arrival.jpg', '02-All-doors.jpg']);
+  assert.deepEqual([jpeg('cues/01-Arrival.jpg').width, jpeg('cues/02-All-doors.jpg').height], [320, 200]);
+  assert.ok(watcher.revision > seen);
+  assert.deepEqual(watcher.state.cues, {});
 });
 
 test('sweep.py saves a picture for each step of a section, and takes it away again', async () => {

@@ -339,6 +339,32 @@ const SESSIONS = {
     return user;
   },
 
+  cues: async (session, name) => {
+    const user = await Participant.join(session, 'control', VIEW);
+    user.watch();
+    await user.record(name);
+    const save = (cue, more) => user.ask({ type: 'patch', patch: { cues: { [cue]: { ms: 300, ...more } } } });
+    await save('Arrival', { order: 1, text: 'Welcome' });
+    await user.ask({ type: 'patch', patch: { camera: { eye: [2, 1.5, 3], focus: [0.6, 0.9, -1] }, nodes: { 5: { active: false } } } });
+    await save('Without the box', { order: 2 });
+    await user.ask({ type: 'patch', patch: { nodes: null, lights: { active: '13' }, selection: { node: 7 }, sections: { Cut: { normal: [0, 1, 0], distance: 1.2 } } } });
+    await save('Cut', { order: 3, easing: 'linear', camera: { eye: [-2, 2.5, 3], focus: [0, 0.5, 0] } });
+    const flown = (id) => user.client.until('the end', () => user.client.texts.find((text) => text.type === 'flown' && text.id === id));
+    const show = (which) => user.client.send({ type: 'cue', ...which });
+    await flown(show({ name: 'Arrival' }));
+    assert.deepEqual([user.state.sections, user.state.lights.active], [{}, 'headlight']);
+    await flown(show({ step: 1 }));
+    const stopped = show({ step: 1 });
+    await sleep(120);
+    await user.ask({ type: 'navigate', rotate: [10, 5] }); // in the middle of the way
+    assert.equal((await flown(stopped)).completed, false);
+    show({ step: -1 });
+    await sleep(100);
+    await flown(show({ name: 'Cut' })); // while another is on its way
+    assert.equal(user.state.cue.name, 'Cut');
+    return user;
+  },
+
   doors: async (session, name) => {
     const user = await Participant.join(session, 'control', VIEW);
     user.watch();

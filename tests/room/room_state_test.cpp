@@ -429,7 +429,7 @@ TEST_CASE("a camera at a node that was moved stands where it was moved to") {
 TEST_CASE("what is kept and cannot be used: nothing of it counts, and a notice says so") {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"markers":{"m":{"point":[1,2,3]}},"nodes":{"99":{"active":false}}})", "99"},
-        {R"({"camera":{"fov":20}})", "views, markers, measures, unit and nodes"},
+        {R"({"camera":{"fov":20}})", "views, markers, measures, unit, cues and nodes"},
         {R"({"views":{"v":{"fov":"wide"}}})", "fov"},
         {R"({"measures":{"w":{"kind":"radius","picks":[
             {"node":99,"snap":"center","points":[[0,0,0],[1,0,0],[0,1,0]]}]}}})",

@@ -1,7 +1,10 @@
+import { cueAfter, cueNames } from '../base/cues.js';
 import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
 import { rows, toggle } from './controls.js';
+import { CuePictures } from './cue-pictures.js';
+import { cueStrip } from './cue-strip.js';
 import { pointButton } from './pointing.js';
 import { stateOf } from './section.js';
 import { Trail } from './trail.js';
@@ -13,7 +16,12 @@ import { viewNames } from './views-section.js';
  * @import { Store } from '../base/store.js'
  * @import { Commands } from '../connection/commands.js'
  * @import { Menu } from './menu.js'
+ *
+ * @typedef {{store: Store, commands: Commands, menu: Menu, report: (error: *) => void, turnPointing: () => void}} BarPage
  */
+
+/** Keys of presenters' clickers, and the steps that they take through the cues. */
+const STEPS = { PageDown: 1, PageUp: -1 };
 
 /** So long a chosen view counts as the present one, while the camera flies there. */
 const FLIES_MS = 1000;
@@ -26,7 +34,10 @@ export class Bar {
   #commands;
   #menu;
   #turnPointing;
+  #report;
+  #pictures;
   #point = /** @type {?HTMLElement} */ (null);
+  #cues = /** @type {?HTMLElement} */ (null);
   #trail = new Trail(() => this.#showBack());
   /** The button of the strip that is open. @type {?HTMLElement} */
   #opener = null;
@@ -35,9 +46,11 @@ export class Bar {
   #back = null;
   #chosen = { key: '', at: -Infinity };
 
-  /** Empty until `rebuild`. @param {{store: Store, commands: Commands, menu: Menu, turnPointing: () => void}} page */
-  constructor({ store, commands, menu, turnPointing }) {
+  /** Empty until `rebuild`. @param {BarPage} page */
+  constructor({ store, commands, menu, report, turnPointing }) {
     this.#turnPointing = turnPointing;
+    this.#report = report;
+    this.#pictures = new CuePictures({ store, commands });
     this.#store = store;
     this.#commands = commands;
     this.#menu = menu;
@@ -54,7 +67,33 @@ export class Bar {
     store.subscribe(({ state }) => [state?.scene], () => this.#open(null));
     store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes, state?.swings, state?.navigation],
       () => this.#showStrip());
+    store.subscribe(({ state, header }) => [state?.cues, state?.cue, header?.view], () => this.#showStrip());
     store.subscribe(({ points, language }) => [points, language], () => this.#showPoint());
+    document.addEventListener('keydown', (event) => this.#key(event));
+  }
+
+  /** What a presenter needs while they show the cues. */
+  present() {
+    this.#menu.close();
+    if (this.#cues?.ariaExpanded === 'false') this.#cues.click();
+  }
+
+  /** In the menu and where something is typed, these keys have another meaning. @param {KeyboardEvent} event */
+  #key(event) {
+    const { key, target, altKey, ctrlKey, metaKey, shiftKey } = event;
+    const { role, state } = this.#store.now;
+    const isTyped = target instanceof Element && target.closest('input, textarea, select, dialog');
+    if (!(key in STEPS) || altKey || ctrlKey || metaKey || shiftKey || isTyped) return;
+    if (role !== 'control' || cueNames(state?.cues).length === 0) return;
+    event.preventDefault();
+    if (!event.repeat) this.#step(STEPS[key]);
+  }
+
+  /** @param {1|-1} by */
+  #step(by) {
+    const isThere = cueAfter(stateOf(this.#store), by) !== undefined;
+    if (isThere) this.#commands.cue({ step: by });
+    else this.#report(new Error(say(by > 0 ? 'cues.isLast' : 'cues.isFirst')));
   }
 
   /** What this page sent. */
@@ -80,7 +119,11 @@ export class Bar {
     const measures = button(say('measures.title'), () => this.#menu.open(measures, 'measures'), { icon: 'measure' });
     const point = pointButton(this.#turnPointing);
     this.#point = point;
-    for (const spare of [sections, measures, point]) spare.classList.add('spare');
+    const cues = opens(say('cues.title'), 'present', () => cueStrip({
+      store: this.#store, commands: this.#commands, pictures: this.#pictures, step: (by) => this.#step(by),
+    }));
+    this.#cues = cues;
+    for (const spare of [sections, measures, point, cues]) spare.classList.add('spare');
     const more = button(say('bar.more'), () => this.#menu.open(more), { icon: 'menu' });
     this.#open(null);
     this.#bar.ariaLabel = say('bar.label');
@@ -94,6 +137,7 @@ export class Bar {
       sections,
       measures,
       point,
+      cues,
       more,
     );
     this.#showBack();

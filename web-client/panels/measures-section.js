@@ -1,10 +1,11 @@
 import { button, element } from '../base/element.js';
 import { TOOLS, UNITS, componentWords, measuresOf, nextPick, valueWords } from '../base/measures.js';
+import { unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { byName, choice, facts, numbers, rows, toggle } from './controls.js';
 import { each, joined, stateOf } from './section.js';
-import { field, unusedName } from './views-section.js';
+import { field } from './views-section.js';
 
 /**
  * @import { Kind, Measure, Snapped, Unit } from '../base/measures.js'

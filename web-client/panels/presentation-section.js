@@ -1,3 +1,4 @@
+import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { holderName, say } from '../base/texts.js';
@@ -13,7 +14,6 @@ import { each, joined, stateOf } from './section.js';
  */
 
 const LARGEST_SIDE = 8192;
-const KEEPS_FILE_MS = 60_000;
 
 /**
  * Who is in control, the picture as a file, and what scene is shown.
@@ -59,7 +59,7 @@ function snapshot(commands, store) {
     if (made.ariaBusy === 'true') return;
     setBusy(true);
     const picture = await commands.snapshot(snapshotSize(/** @type {FrameHeader} */ (store.now.header).view));
-    if (picture) save(picture.data);
+    if (picture) download(picture.data, 'image/jpeg', snapshotName(new Date()));
     setBusy(false);
   }, { icon: 'camera' });
   // Not disabled, which would take the focus from it.
@@ -108,7 +108,7 @@ function scenes({ commands, store, offer }) {
   };
   const giveBack = async () => {
     const before = stateOf(store);
-    if (!await commands.patch({ views: null, markers: null, measures: null, unit: null, nodes: null })) return;
+    if (!await commands.patch({ views: null, markers: null, measures: null, unit: null, cues: null, nodes: null })) return;
     const undo = () => commands.patch(backTo(before, stateOf(store)));
     offer(say('scenes.isAsInFile'), say('views.undo'), undo);
   };
@@ -142,22 +142,23 @@ function scenes({ commands, store, offer }) {
 /**
  * Whether nothing that is kept of a scene differs from its file, as far as a client can tell.
  *
- * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'nodes'>} state
+ * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'cues'|'nodes'>} state
  */
-export function isAsInFile({ views, markers, measures, nodes }) {
-  return ![nodes, markers, measures].some(hasMembers) && !Object.keys(views).some((name) => name !== 'home');
+export function isAsInFile({ views, markers, measures, cues, nodes }) {
+  return ![nodes, markers, measures, cues].some(hasMembers) && !Object.keys(views).some((name) => name !== 'home');
 }
 
 /**
  * The patch that makes what is kept of a scene what it was `before`.
  *
- * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'unit'|'nodes'>} before
- * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'nodes'>} now
+ * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'unit'|'cues'|'nodes'>} before
+ * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'cues'|'nodes'>} now
  */
 export function backTo(before, now) {
   const all = (member) => ({ ...Object.fromEntries(Object.keys(now[member]).map((key) => [key, null])), ...before[member] });
   return {
-    views: all('views'), markers: all('markers'), measures: all('measures'), unit: before.unit, nodes: all('nodes'),
+    views: all('views'), markers: all('markers'), measures: all('measures'), unit: before.unit, cues: all('cues'),
+    nodes: all('nodes'),
   };
 }
 
@@ -187,10 +188,4 @@ export function snapshotSize({ width, height, pixelRatio }) {
 export function snapshotName(date) {
   // Swedish has the order of ISO 8601: 2026-03-04 05:06:07.
   return `scene-${date.toLocaleString('sv').replace(/[-:]/g, '').replace(' ', '-')}.jpg`;
-}
-
-function save(data) {
-  const href = URL.createObjectURL(new Blob([data], { type: 'image/jpeg' }));
-  element('a', { href, download: snapshotName(new Date()) }).click();
-  setTimeout(() => URL.revokeObjectURL(href), KEEPS_FILE_MS);
 }

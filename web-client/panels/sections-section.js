@@ -1,10 +1,11 @@
 import { button, element } from '../base/element.js';
 import { flipped, movedCorner, planeAcross, planeFacing, planeThrough, sweep } from '../base/planes.js';
+import { unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say, written } from '../base/texts.js';
 import { range, rows, toggle } from './controls.js';
 import { each, stateOf } from './section.js';
-import { unusedName } from './views-section.js';
+
 
 /**
  * @import { Bounds, Plane } from '../base/planes.js'

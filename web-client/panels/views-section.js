@@ -1,4 +1,5 @@
 import { button, element } from '../base/element.js';
+import { moved, namesInOrder, unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { byName, rows } from './controls.js';
@@ -88,9 +89,7 @@ function savedViews({ fly, patch, report, offer, state }) {
  * @param {StateDocument['views']} views
  */
 export function viewNames(views) {
-  const orderOf = (name) => views[name].order ?? Infinity;
-  return Object.keys(views).filter((name) => name !== 'home')
-    .sort((a, b) => orderOf(a) - orderOf(b) || byName(a, b));
+  return namesInOrder(views, byName).filter((name) => name !== 'home');
 }
 
 /**
@@ -101,14 +100,7 @@ export function viewNames(views) {
  * @param {1|-1} by
  */
 export function movedView(views, name, by) {
-  const names = viewNames(views);
-  const at = names.indexOf(name);
-  const other = names[at + by];
-  if (other === undefined) return null;
-  names[at] = other;
-  names[at + by] = name;
-  const changed = names.map((one, order) => ({ one, order })).filter(({ one, order }) => views[one].order !== order);
-  return Object.fromEntries(changed.map(({ one, order }) => [one, { order }]));
+  return moved(views, viewNames(views), name, by);
 }
 
 /** What a saved view has of a camera. @param {StateDocument['camera']} camera */
@@ -259,11 +251,4 @@ export function lookingAt({ eye, focus, up, fov }, place, at, { width, height })
   const aside = across.map((x, i) => (x * (at.x - width / 2) - up[i] * Math.hypot(...ahead) * (at.y - height / 2)) * pixel);
   const seen = place.map((x, i) => x - aside[i]);
   return { eye: seen.map((x, i) => x - ahead[i]), focus: seen, center: place };
-}
-
-/** A word with the first number that none of the names has. */
-export function unusedName(word, names) {
-  let number = 1;
-  while (names.includes(`${word} ${number}`)) number += 1;
-  return `${word} ${number}`;
 }

@@ -9,7 +9,7 @@ import { readFrame } from './frame-file.js';
 export const SUBPROTOCOL = 'vrut-preview.v1';
 const WITHIN_MS = 5000;
 const SILENT_UNLESS_WRONG = /^(pointer(down|move|up|cancel)|wheel|key(down|up)|point|frame)$/;
-const ANSWERED_BY = { hello: 'welcome', pick: 'picked', tree: 'tree', scenes: 'scenes', share: 'shared' };
+const ANSWERED_BY = { hello: 'welcome', pick: 'picked', tree: 'tree', scenes: 'scenes', share: 'shared', check: 'checked' };
 
 /** RFC 7396. */
 export function mergePatch(target, patch) {

@@ -26,6 +26,7 @@ const DEFINITIONS = {
   'log header': 'eventLogHeader',
   'log line': 'eventLogLine',
   levels: 'levelTable',
+  cues: 'cueList',
 };
 
 /** The schema without room for members of later versions: an example has none that is misspelled. */

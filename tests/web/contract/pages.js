@@ -2,7 +2,7 @@
 import { readFileSync } from 'node:fs';
 
 const FOLDER = new URL('../../../protocol/', import.meta.url);
-export const PAGES = ['PROTOCOL', 'CLIENT_MESSAGES', 'SERVER_MESSAGES', 'STATE', 'FRAMES', 'NAVIGATION', 'EVENT_LOG', 'LEVELS'];
+export const PAGES = ['PROTOCOL', 'CLIENT_MESSAGES', 'SERVER_MESSAGES', 'STATE', 'FRAMES', 'NAVIGATION', 'EVENT_LOG', 'LEVELS', 'CUES'];
 
 /** @returns {Array<{what: string, where: string, value: any}>} of a page, in its order */
 export function examplesOf(page) {

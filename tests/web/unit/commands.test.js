@@ -21,12 +21,15 @@ test('each command is a message of the protocol', async () => {
   await commands.pick({ x: 1, y: 2, frame: 3 });
   await commands.tree({ only: 'switches' });
   await commands.snapshot({ width: 10, height: 20 });
+  await commands.cue({ step: 1 });
+  await commands.check({ format: 'vrut-preview-cues', version: 1, cues: {} });
+  await commands.cuePicture({ width: 10, height: 20, cue: 'Arrival' });
   await commands.record('start');
   await commands.scenes();
   await commands.share('https://preview.example/');
   await commands.open('car', 'z');
   assert.deepEqual(asked.map(({ type }) => type),
-    ['patch', 'patch', 'control', 'fit', 'swing', 'fly', 'pick', 'tree', 'snapshot', 'record', 'scenes', 'share', 'open']);
+    ['patch', 'patch', 'control', 'fit', 'swing', 'fly', 'pick', 'tree', 'snapshot', 'cue', 'check', 'snapshot', 'record', 'scenes', 'share', 'open']);
   for (const message of asked) {
     assert.ok(isClientMessage(JSON.parse(JSON.stringify(message))), `${JSON.stringify(message)}: ${ajv.errorsText(isClientMessage.errors)}`);
   }

@@ -13,7 +13,7 @@ import {
 } from '../../../web-client/panels/presentation-section.js';
 import { section } from '../../../web-client/panels/section.js';
 import {
-  cameraEntries, lookingAt, markerEntries, middleOf, movedView, placeOf, unusedName, viewNames,
+  cameraEntries, lookingAt, markerEntries, middleOf, movedView, placeOf, viewNames,
 } from '../../../web-client/panels/views-section.js';
 
 afterEach(() => setLanguage('en'));
@@ -111,35 +111,31 @@ describe('views', () => {
     assert.equal(movedView(ordered, 'B', -1), null);
     assert.equal(movedView(ordered, 'C', 1), null);
   });
-
-  test('a name that nothing has yet', () => {
-    assert.equal(unusedName('View', []), 'View 1');
-    assert.equal(unusedName('View', ['View 1', 'Door', 'View 3']), 'View 2');
-    assert.equal(unusedName('View', ['View 1', 'View 2']), 'View 3');
-  });
 });
 
 describe('what is kept of a scene', () => {
-  const asInFile = { views: { home: { fov: 40 } }, markers: {}, measures: {}, nodes: {} };
+  const asInFile = { views: { home: { fov: 40 } }, markers: {}, measures: {}, cues: {}, nodes: {} };
 
   test('is as in the file without entries and other views', () => {
     assert.equal(isAsInFile(asInFile), true);
     assert.equal(isAsInFile({ ...asInFile, nodes: { 1: { active: false } } }), false);
     assert.equal(isAsInFile({ ...asInFile, markers: { a: {} } }), false);
     assert.equal(isAsInFile({ ...asInFile, measures: { a: {} } }), false);
+    assert.equal(isAsInFile({ ...asInFile, cues: { a: {} } }), false);
     assert.equal(isAsInFile({ ...asInFile, views: { home: {}, 'View 1': {} } }), false);
   });
 
   test('comes back as it was, without what has come since', () => {
     const [mm, cm] = ['mm', 'cm'].map((shown) => ({ metres: 1, shown }));
     const before = {
-      views: { home: { fov: 30 }, A: { fov: 20 } }, markers: {}, measures: { w: { kind: 'angle' } }, unit: cm, nodes: { 1: { active: false } },
+      views: { home: { fov: 30 }, A: { fov: 20 } }, markers: {}, measures: { w: { kind: 'angle' } }, unit: cm,
+      cues: { a: { ms: 5 } }, nodes: { 1: { active: false } },
     };
-    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' } }, measures: {}, unit: mm, nodes: {} };
+    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' } }, measures: {}, unit: mm, cues: { b: {} }, nodes: {} };
     const patch = backTo(before, now);
     assert.deepEqual(patch, {
       views: { home: { fov: 30 }, A: { fov: 20 }, B: null }, markers: { m: null }, measures: { w: { kind: 'angle' } }, unit: cm,
-      nodes: { 1: { active: false } },
+      cues: { a: { ms: 5 }, b: null }, nodes: { 1: { active: false } },
     });
     assert.deepEqual(mergePatch(now, patch), before);
   });

@@ -1,0 +1,175 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, describe, test } from 'node:test';
+import { assertClean } from './axe.js';
+import { pose } from './camera.js';
+import { Server } from './program.js';
+import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
+
+const SIZES = {
+  tablet: { width: 1180, height: 820, pixelRatio: 1 },
+  phone: { width: 390, height: 844, pixelRatio: 1 },
+};
+
+for (const [name, size] of Object.entries(SIZES)) {
+  describe(`cues on a ${name}`, { skip: browserIsMissing }, () => {
+    let server;
+    let browser;
+    let presenter;
+    let watchers;
+    let page;
+    let menu;
+
+    before(async () => {
+      server = await Server.start();
+      browser = await launchBrowser();
+      const open = async (address) => {
+        const tablet = await Tablet.open(browser, address, size, { reducedMotion: 'reduce' });
+        await tablet.shows((await tablet.wire.still()).frame);
+        await tablet.pictures(false);
+        return tablet;
+      };
+      presenter = await open(server.address);
+      watchers = [await open(`${server.address}#watch`), await open(`${server.address}#watch`)];
+      ({ page } = presenter);
+      menu = page.locator('[data-section="cues"]');
+      await page.locator('#menu-button').tap();
+      await menu.locator('summary').tap();
+    });
+
+    after(async () => {
+      await browser?.close();
+      await server?.stop();
+    });
+
+    const state = () => presenter.wire.state;
+    const until = (what, get) => presenter.wire.until(what, get);
+    const button = (label, where = menu) => where.getByRole('button', { name: label, exact: true });
+    const strip = () => page.locator('#strip');
+    const chip = (label, pressed) => strip().getByRole('button', { name: label, exact: true, pressed });
+    const line = (text) => page.locator('#lines').getByText(text);
+    const add = async (cue) => {
+      await menu.getByRole('textbox', { name: 'Name of the cue' }).fill(cue);
+      await button('Add what is shown').tap();
+      await until(cue, () => state().cues[cue]);
+    };
+
+    test('one tap makes a cue of what is shown, with words and its time', async () => {
+      await add('Arrival');
+      await presenter.say({ type: 'patch', patch: { camera: { fov: 20 }, nodes: { 101: { active: false } } } });
+      await add('Close');
+      await presenter.say({ type: 'patch', patch: { camera: { fov: 60 }, nodes: null } });
+      await add('Far');
+      assert.deepEqual(state().cues.Close.nodes, { 101: { active: false } });
+      await button('Change Close').tap();
+      await menu.getByRole('textbox', { name: 'What to say at Close' }).fill('See the lamp.\nIt is new.');
+      await menu.getByRole('slider', { name: 'The way there takes' }).fill('0.2');
+      await until('the words', () => state().cues.Close.text === 'See the lamp.\nIt is new.');
+      await until('the time', () => state().cues.Close.ms === 200);
+      await presenter.screenshot(`cues-${name}-menu`);
+      await assertClean(page, 'cues in the menu');
+      await button('Change Close').tap();
+    });
+
+    test('cues change places, are renamed, overwritten and deleted, and that is undone', async () => {
+      await button('Change Far').tap();
+      await button('Move up').tap();
+      await until('the order', () => state().cues.Far.order === 1 && state().cues.Close.order === 2);
+      await button('Move down').tap();
+      await until('the order', () => state().cues.Far.order === 2);
+      const before = state().cues.Far;
+      await presenter.say({ type: 'patch', patch: { camera: { fov: 70 } } });
+      await button('Save what is shown here').tap();
+      await until('the new look', () => state().cues.Far.camera.fov === 70);
+      await page.locator('#lines').getByRole('button', { name: 'Undo' }).tap();
+      await until('the look before', () => state().cues.Far.camera.fov === before.camera.fov);
+      await menu.getByRole('textbox', { name: 'New name of Far' }).fill('Wide');
+      await button('Rename').tap();
+      await until('the new name', () => state().cues.Wide && !state().cues.Far);
+      await button('Delete Wide').tap();
+      await until('nothing', () => !state().cues.Wide);
+      await page.locator('#lines').getByRole('button', { name: 'Undo' }).tap();
+      await until('it again', () => state().cues.Wide);
+      assert.deepEqual(state().cues.Wide, before);
+    });
+
+    test('a presenter sees words and pictures, and goes on by button, clicker and picture', async () => {
+      await button('Present').tap();
+      await page.waitForFunction(() => [...document.querySelectorAll('#strip .cues img')].every((image) => image.naturalWidth === 240));
+      await button('Next cue', strip()).tap();
+      await chip('Arrival', true).waitFor();
+      await page.keyboard.press('PageDown');
+      await chip('Close', true).waitFor();
+      await until('the cue', () => state().cue.name === 'Close' && state().camera.fov === 20);
+      await strip().getByText('It is new.').waitFor();
+      await strip().getByText('Next: Wide').waitFor();
+      const { x, width } = await strip().boundingBox();
+      assert.ok(x >= 0 && x + width <= size.width, `the strip is ${width} wide from ${x}`);
+      assert.equal(await page.evaluate(() => document.querySelector('#stage').scrollLeft), 0);
+      await presenter.screenshot(`cues-${name}-strip`);
+      await assertClean(page, 'cues in the strip');
+      await page.keyboard.press('PageDown');
+      await chip('Wide', true).waitFor();
+      await page.keyboard.press('PageDown');
+      await line('This is the last cue.').waitFor();
+      await page.keyboard.press('PageUp');
+      await chip('Close', true).waitFor();
+      await chip('Arrival', false).tap();
+      await chip('Arrival', true).waitFor();
+      await page.keyboard.press('PageUp');
+      await line('There is no cue before this one.').waitFor();
+      for (const watcher of watchers) {
+        await watcher.wire.until('the first cue', () => watcher.wire.state.cue?.name === 'Arrival');
+        assert.equal(await watcher.page.getByText('See the lamp.').count(), 0);
+        assert.equal(await watcher.page.locator('#strip').isVisible(), false);
+      }
+    });
+
+    test('one who steers meanwhile stops the way, and the next cue begins there', async () => {
+      await presenter.say({ type: 'patch', patch: { cues: { Close: { ms: 60_000 } } } });
+      await page.keyboard.press('PageDown');
+      await until('the cue', () => state().cue.name === 'Close');
+      await presenter.say({ type: 'navigate', pan: [0, 0.1] });
+      const changed = async (ms) => {
+        await presenter.say({ type: 'patch', patch: { cues: { Close: { ms } } } });
+        await until('the change', () => state().cues.Close.ms === ms);
+      };
+      await changed(300);
+      const stopped = pose(state().camera);
+      await changed(200);
+      assert.deepEqual(pose(state().camera), stopped);
+      await page.keyboard.press('PageDown');
+      await until('the next cue', () => state().cue.name === 'Wide');
+    });
+
+    test('the list is a file, and comes back from it, but for what does not go with the scene', async () => {
+      await page.locator('#menu-button').tap();
+      const coming = page.waitForEvent('download');
+      await button('Save the list').tap();
+      const file = await coming;
+      assert.match(file.suggestedFilename(), /-cues\.json$/);
+      const list = JSON.parse(readFileSync(await file.path(), 'utf8'));
+      assert.deepEqual(list.cues, state().cues);
+      await presenter.say({ type: 'patch', patch: { cues: null } });
+      await until('no cues', () => Object.keys(state().cues).length === 0);
+      const open = async (given) => {
+        const text = typeof given === 'string' ? given : JSON.stringify(given);
+        await menu.locator('input[type=file]').setInputFiles({ name: 'cues.json', mimeType: 'application/json', buffer: Buffer.from(text) });
+      };
+      const { Close, ...others } = list.cues;
+      await open({ ...list, cues: { ...others, Close: { ...Close, selection: { node: 9_999_999 } } } });
+      await menu.getByText('there is no node 9999999').waitFor();
+      await until('the others', () => Object.keys(state().cues).length === 2);
+      assert.deepEqual(state().cues, others);
+      await presenter.screenshot(`cues-${name}-problem`);
+      await open(list);
+      await until('all', () => Object.keys(state().cues).length === 3);
+      assert.deepEqual(state().cues, list.cues);
+      await open({ ...list, version: 2 });
+      await menu.getByText('use a newer program').waitFor();
+      await open('no list');
+      await line('This file is no list of cues.').waitFor();
+      assert.deepEqual(state().cues, list.cues);
+    });
+  });
+}

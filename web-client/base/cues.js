@@ -1,0 +1,46 @@
+import { namesInOrder } from './order.js';
+
+/**
+ * @import { StateDocument } from './protocol.js'
+ * @typedef {StateDocument['cues']} Cues
+ * @typedef {Cues[string]} Cue
+ */
+
+/** Names of the cues, as they follow each other. @param {Cues} [cues] */
+export function cueNames(cues = {}) {
+  return namesInOrder(cues);
+}
+
+/**
+ * The name of the cue so many steps after the one that was shown last; undefined where there is none.
+ *
+ * @param {Pick<StateDocument, 'cues'|'cue'>} state
+ * @param {number} steps
+ */
+export function cueAfter({ cues, cue }, steps) {
+  const names = cueNames(cues);
+  const at = names.indexOf(cue?.name ?? '') + steps;
+  return at < 0 ? undefined : names[at];
+}
+
+/** The members of a cue that say what is seen. */
+export const LOOKS = ['camera', 'lights', 'backgrounds', 'selection', 'nodes', 'sections', 'sectionBox'];
+
+/** What a patch has for a cue to become what is shown. */
+export function asShown() {
+  return Object.fromEntries(LOOKS.map((member) => [member, null]));
+}
+
+/** A text that is the same for cues that look the same. @param {Cue} cue */
+export function lookOf(cue) {
+  return JSON.stringify(LOOKS.map((member) => cue[member]));
+}
+
+/**
+ * The file of a list of cues.
+ *
+ * @param {Pick<StateDocument, 'cues'|'scene'>} state
+ */
+export function cueList({ cues, scene }) {
+  return { format: 'vrut-preview-cues', version: 1, scene: scene.file, cues };
+}

@@ -1,0 +1,197 @@
+import { asShown, cueList, cueNames } from '../base/cues.js';
+import { download } from '../base/download.js';
+import { button, element } from '../base/element.js';
+import { moved, unusedName } from '../base/order.js';
+import { onChange } from '../base/store.js';
+import { say, written } from '../base/texts.js';
+import { range, rows } from './controls.js';
+import { each, joined, stateOf } from './section.js';
+import { field } from './views-section.js';
+
+/**
+ * @import { Cues } from '../base/cues.js'
+ * @import { Page, Section } from './section.js'
+ */
+
+/** So many bytes of a message are left for its own members; see the server's limits. */
+const MOST_BYTES = 60_000;
+
+/**
+ * The cues of a presentation: made of what is shown, put in order, kept as a file.
+ *
+ * @param {Page} page
+ * @returns {Section}
+ */
+export function cuesSection(page) {
+  const parts = joined([cues(page), files(page)]);
+  const all = element('fieldset', { className: 'sections' }, ...parts.content);
+  return {
+    name: 'cues',
+    title: say('cues.title'),
+    content: [all],
+    show: each(parts.show, onChange(({ steers }) => [steers], (steers) => Object.assign(all, { disabled: !steers }))),
+  };
+}
+
+/** @param {Page} page */
+function cues({ commands, store, offer, report, present }) {
+  const { patch, cue: show } = commands;
+  const all = () => stateOf(store).cues;
+  const isFree = (name) => {
+    // What is there would stay as it is.
+    if (Object.hasOwn(all(), name)) report(new Error(say('cues.nameTaken', { name })));
+    return !Object.hasOwn(all(), name);
+  };
+  const put = async (name, changed, text) => {
+    const before = all()[name];
+    if (await patch({ cues: { [name]: changed } })) {
+      offer(text, say('views.undo'), () => patch({ cues: { [name]: before } }));
+    }
+  };
+  const add = async (name) => {
+    const orders = Object.values(all()).map(({ order }) => order ?? 0);
+    return isFree(name) && patch({ cues: { [name]: { order: Math.max(-1, ...orders) + 1 } } });
+  };
+  const actions = {
+    show: (name) => show({ name }),
+    remove: (name) => put(name, null, say('views.deleted', { name })),
+    rename: async (name, to) => isFree(to) && patch({ cues: { [to]: all()[name], [name]: null } }),
+    overwrite: (name) => put(name, asShown(), say('cues.overwritten', { name })),
+    change: (name, members) => commands.change({ cues: { [name]: members } }),
+    move: (name, by) => {
+      const changed = moved(all(), cueNames(all()), name, by);
+      if (changed) patch({ cues: changed });
+    },
+  };
+  const list = rows(say('cues.title'), say('cues.none'), (name) => cueRow(name, actions));
+  const entry = field(say('cues.name'), say('cues.add'), add);
+  const begin = button(say('cues.present'), present, { icon: 'present' });
+  return {
+    content: [list.element, entry.element, element('div', { className: 'buttons' }, begin)],
+    show: onChange(({ state }) => [state.cues, state.cue], (known, shown) => {
+      const names = cueNames(known);
+      list.show(names.map((name, order) => [name, {
+        cue: known[name], isShown: name === shown?.name, isFirst: order === 0, isLast: order === names.length - 1,
+      }]));
+      begin.hidden = names.length === 0;
+      entry.show(unusedName(say('cues.newName'), names));
+    }),
+  };
+}
+
+/** A row of the list: its elements, and how it shows its cue. */
+function cueRow(name, { show, remove, rename, overwrite, change, move }) {
+  const there = button(name, () => show(name));
+  const away = button(say('views.delete', { text: name }), () => remove(name), { icon: 'remove', quiet: true, only: true });
+  const unfold = button(say('views.edit', { text: name }), () => turn(), { icon: 'edit', quiet: true, only: true });
+  unfold.ariaExpanded = 'false';
+  const entry = field(say('views.newNameOf', { name }), say('views.rename'), (to) => rename(name, to));
+  const words = element('textarea', { rows: 3, maxLength: 1000, ariaLabel: say('cues.wordsOf', { name }), placeholder: say('cues.words') });
+  words.onchange = () => change(name, { text: words.value });
+  const time = range(say('cues.time'), { min: 0, max: 10, step: 0.1, say: (s) => `${written(s, 2)} s` }, (s) => change(name, { ms: Math.round(s * 1000) }));
+  const earlier = button(say('views.earlier'), () => move(name, -1));
+  const later = button(say('views.later'), () => move(name, 1));
+  const editor = element('div', { className: 'editor', hidden: true }, words, time.element, entry.element,
+    element('div', { className: 'buttons' }, earlier, later),
+    button(say('cues.overwrite'), () => overwrite(name), { icon: 'camera' }));
+  const turn = () => {
+    editor.hidden = !editor.hidden;
+    unfold.ariaExpanded = String(!editor.hidden);
+    (editor.hidden ? unfold : words).focus();
+  };
+  editor.onkeydown = (event) => {
+    if (event.key !== 'Escape') return;
+    event.preventDefault(); // the menu stays open
+    turn();
+  };
+  return {
+    children: [there, unfold, away, editor],
+    show({ cue, isShown, isFirst, isLast }) {
+      there.ariaPressed = String(isShown);
+      if (document.activeElement !== words) words.value = cue.text;
+      time.show(cue.ms / 1000);
+      entry.show(name);
+      earlier.ariaDisabled = String(isFirst);
+      later.ariaDisabled = String(isLast);
+    },
+  };
+}
+
+/** The list as a file. @param {Page} page */
+function files({ commands, store, offer, report }) {
+  const problems = element('ul', { className: 'problems', hidden: true, tabIndex: -1 });
+  const input = element('input', { type: 'file', accept: 'application/json,.json', hidden: true });
+  input.onchange = async () => {
+    const [file] = /** @type {FileList} */ (input.files);
+    input.value = '';
+    if (file) await take(await file.text());
+  };
+  const tell = (sentences) => {
+    problems.replaceChildren(...sentences.map((sentence) => element('li', {}, sentence)));
+    problems.hidden = sentences.length === 0;
+    if (sentences.length > 0) problems.focus();
+  };
+  const take = async (text) => {
+    const list = parsed(text);
+    if (!list) return report(new Error(say('cues.noList')));
+    const found = /** @type {string[]} */ ([]);
+    const fitting = /** @type {string[]} */ ([]);
+    for (const cues of parts(list.cues)) {
+      const answer = await commands.check({ ...list, cues });
+      if (!answer) return;
+      found.push(...answer.problems.map(({ message }) => message));
+      fitting.push(...answer.fitting);
+    }
+    tell([...new Set(found)]);
+    await put(Object.fromEntries(fitting.map((name) => [name, list.cues[name]])));
+  };
+  const put = async (taken) => {
+    const before = stateOf(store).cues;
+    for (const cues of parts(taken)) if (!await commands.patch({ cues })) return;
+    const names = Object.keys(taken);
+    if (names.length === 0) return;
+    const undo = () => commands.patch({ cues: Object.fromEntries(names.map((name) => [name, before[name] ?? null])) });
+    offer(say('cues.imported', { count: String(names.length) }), say('views.undo'), undo);
+  };
+  const saveList = () => {
+    const list = cueList(stateOf(store));
+    download(JSON.stringify(list, null, 1), 'application/json', `${list.scene.replace(/\.[^.]*$/, '').replaceAll('/', '-')}-cues.json`);
+  };
+  const save = button(say('cues.export'), () => saveList(), { icon: 'save' });
+  const open = button(say('cues.import'), () => input.click(), { icon: 'open' });
+  return {
+    content: [element('div', { className: 'buttons' }, open, save), input, problems],
+    show: onChange(({ state }) => [Object.keys(state.cues).length === 0], (hidden) => Object.assign(save, { hidden })),
+  };
+}
+
+/** A list of cues of a file's text; null where it is none. */
+function parsed(text) {
+  try {
+    const list = JSON.parse(text);
+    return typeof list.cues === 'object' && list.cues ? list : null;
+  } catch {
+    return null;
+  }
+}
+
+/**
+ * Cues in parts that messages may hold; at least one part.
+ *
+ * @param {Cues} cues
+ * @returns {Cues[]}
+ */
+export function parts(cues) {
+  const made = [/** @type {Cues} */ ({})];
+  let bytes = 0;
+  for (const [name, cue] of Object.entries(cues)) {
+    const size = new TextEncoder().encode(JSON.stringify({ [name]: cue })).length;
+    if (bytes > 0 && bytes + size > MOST_BYTES) {
+      made.push({});
+      bytes = 0;
+    }
+    made[made.length - 1][name] = cue;
+    bytes += size;
+  }
+  return made;
+}
