@@ -4,8 +4,8 @@
 The list is a file that the page saves. The script checks it against the scene first, and prints what does not
 go with that. Without a list it shows the cues that are there.
 
-It takes control, and gives it back at its end; cues that it brought are taken away again. Needs
-python3-websockets (Debian) or `pip install websockets`. The environment may give the server's address and
+It takes control, and gives it back at its end; cues that it brought are taken away again, and what was shown
+before is shown again. Needs python3-websockets (Debian) or `pip install websockets`. The environment may give the server's address and
 token as VRUT_PREVIEW_URL and VRUT_PREVIEW_TOKEN."""
 import argparse
 import asyncio
@@ -16,6 +16,8 @@ import re
 import urllib.parse
 
 import websockets
+
+HERE = "show_cues.py began here"
 
 
 class Server:
@@ -92,10 +94,12 @@ async def main():
         before = message["state"]["cues"]
         await server.send(type="control", action="take")
         cues = await bring(server, options.list) if options.list else before
+        await server.send(type="patch", patch={"cues": {HERE: {"ms": 0}}})
         try:
             await show(server, in_order(cues), options)
         finally:
-            if options.list:
-                await server.send(type="patch", patch={"cues": {name: before.get(name) for name in cues}})
+            await server.send(type="cue", name=HERE)
+            brought = cues if options.list else {}
+            await server.send(type="patch", patch={"cues": {HERE: None, **{name: before.get(name) for name in brought}}})
 
 asyncio.run(main())
