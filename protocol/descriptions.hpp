@@ -182,6 +182,7 @@ void describe(V& v, const Cue*) {
     v.optional("name", &Cue::name, Text{100}, "Which. Without `step`.");
     v.optional("step", &Cue::step, Integer{-static_cast<std::int64_t>(kMaxCues), kMaxCues},
                "How many after the one that was shown last, in their order. Without `name`.");
+    v.optional("camera", &Cue::camera, kCameraOverlay, "Laid over the camera of the cue, which does not change.");
 }
 
 template <class V>
@@ -267,6 +268,8 @@ void describe(V& v, const Snapshot*) {
     v.required("height", &Snapshot::height, kPixels, "Pixels.");
     v.optional("format", &Snapshot::format, kFormat, "Of the file.");
     v.optional("jpegQuality", &Snapshot::jpeg_quality, kJpegQuality, "Of a JPEG file.");
+    v.optional("samples", &Snapshot::samples, Integer{1, 16},
+               "A pixel; without it as many as at full accuracy.");
     v.optional("cue", &Snapshot::cue, Text{100},
                "The scene as this cue shows it; it is not shown to others.");
     v.optional("camera", &Snapshot::camera, kCameraOverlay,

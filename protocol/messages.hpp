@@ -188,6 +188,7 @@ struct Snapshot {
     int width = 0, height = 0;
     ImageFormat format = ImageFormat::jpeg;
     int jpeg_quality = 90;
+    std::optional<int> samples;      ///< none: as many as at full accuracy
     std::optional<std::string> cue;  ///< as it would look; none: as things stand
     CameraOverlay camera;
     RendererOverlay renderer;
@@ -207,6 +208,7 @@ struct Fly {
 struct Cue {
     std::optional<std::string> name;  ///< either this
     std::optional<int> step;          ///< or this
+    CameraOverlay camera;             ///< over the cue's
 };
 
 /// Finds out what of a list of cues does not go with the scene.

@@ -58,7 +58,7 @@ const offer = (text, label, act) => stage.offer(text, label, act);
 const nextTap = (text, signal) => stage.nextTap(text, signal);
 const { snapping, turnPointing } = stage;
 const menu = new Menu({ store, commands, meter, report, offer, nextTap, snapping, turnPointing, present: () => bar.present(), setLanguage: speak });
-const bar = new Bar({ store, commands, menu, report, turnPointing });
+const bar = new Bar({ store, commands, menu, report, offer, turnPointing });
 
 store.subscribe(({ role }) => [role === 'control'], (wanted) => Object.assign(awake, { wanted }));
 

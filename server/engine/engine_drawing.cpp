@@ -325,7 +325,7 @@ void Engine::draw_snapshot() {
     try {
         if (!snapshot.job) {
             plan::View view = snapshot.order.view;
-            view.samples = kRefined.samples;
+            view.samples = snapshot.order.samples.value_or(kRefined.samples);
             snapshot.job.emplace(std::move(view), snapshot_encoder_.take_spare());
             if (snapshot.order.format == protocol::ImageFormat::jpeg)
                 snapshot.job->output = output_of(kRefined);
@@ -354,6 +354,7 @@ void Engine::finish_snapshot(Snapshot snapshot) {
     picture.header = std::move(snapshot.order.header);
     picture.header.lease = lease_;
     picture.header.quality = kRefined;
+    picture.header.quality.samples = snapshot.job->view.samples;
     picture.header.quality.jpeg_quality = snapshot.order.jpeg_quality;
     picture.header.timing.render_ms = snapshot.job->stats.render_ms;
     picture.header.timing.readback_ms = snapshot.job->stats.readback_ms;

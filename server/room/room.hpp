@@ -47,6 +47,7 @@ struct PictureOrder {
     protocol::FrameHeader header;  ///< but for number, quality and times
     protocol::ImageFormat format = protocol::ImageFormat::jpeg;
     int jpeg_quality = 90;
+    std::optional<int> samples = {};  ///< none: as many as at full accuracy
 };
 
 /// Where others may watch, for a client that has opened the page at this address; empty: it has not.
@@ -362,7 +363,7 @@ private:
     /// begin there.
     void swing_to_cue(const protocol::CueState& cue, protocol::State& next);
     protocol::Checked checked(const tl::expected<protocol::ReadCueList, protocol::Error>& list) const;
-    void fly_to_cue(const Received& received, const protocol::CueState& cue);
+    void fly_to_cue(const Received& received, const protocol::Fly& fly);
 
     // --- recordings
     void start_recording(const Received& received, const std::string& name);

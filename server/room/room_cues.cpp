@@ -11,6 +11,23 @@ using protocol::CueState;
 using protocol::Error;
 namespace code = protocol::error_code;
 
+namespace {
+
+/// To where a cue is seen from, with `camera` laid over that.
+protocol::Fly flight_to(const CueState& cue, const protocol::CameraOverlay& camera) {
+    protocol::CameraOverlay pose{{}, cue.camera.eye, cue.camera.focus, cue.camera.up, cue.camera.center,
+                                 cue.camera.fov};
+    if (camera.node) pose = {camera.node, {}, {}, {}, {}, {}};
+    if (camera.eye) pose.eye = camera.eye;
+    if (camera.focus) pose.focus = camera.focus;
+    if (camera.up) pose.up = camera.up;
+    if (camera.center) pose.center = camera.center;
+    if (camera.fov) pose.fov = camera.fov;
+    return {{{cue.ms, pose}}, cue.easing};
+}
+
+}  // namespace
+
 std::optional<std::string> Room::cue_named(const Received& received, const protocol::Cue& cue) {
     const auto refuse = [&](const char* why, const std::string& sentence) {
         reject(received, why, sentence);
@@ -34,8 +51,11 @@ void Room::apply(const Received& received, const protocol::Cue& message) {
     const std::optional<std::string> name = cue_named(received, message);
     if (!name) return;
     const CueState cue = state_.cues->at(*name);
+    const protocol::Fly fly = flight_to(cue, message.camera);
+    if (const auto path = flight_path(fly, camera(), *scene_); !path)
+        return reject(received, path.error().code.c_str(), path.error().message);
     steer(received);
-    fly_to_cue(received, cue);
+    fly_to_cue(received, fly);
     protocol::State next = state_;
     lay_cue(cue, next);
     next.cue = protocol::ShownCueState{*name};
@@ -54,10 +74,7 @@ void Room::apply(const Received& received, const protocol::Cue& message) {
     advance(time_);
 }
 
-void Room::fly_to_cue(const Received& received, const CueState& cue) {
-    const CueState::Camera& pose = cue.camera;
-    const protocol::Fly fly{{{cue.ms, {{}, pose.eye, pose.focus, pose.up, pose.center, pose.fov}}},
-                            cue.easing};
+void Room::fly_to_cue(const Received& received, const protocol::Fly& fly) {
     if (const auto path = flight_path(fly, camera(), *scene_))
         flight_.emplace(
             InFlight{*path, received.client, received.message.id.value_or(0), time_, state_.camera, fly});

@@ -94,7 +94,7 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     view.width = snapshot.width;
     view.height = snapshot.height;
     PictureOrder order{received.client, view, header_of(state, view, view_size_), snapshot.format,
-                       snapshot.jpeg_quality};
+                       snapshot.jpeg_quality, snapshot.samples};
     order.header.revision = document()->revision();
     order.header.snapshot = received.message.id;
     order.header.handled = *received.message.id;

@@ -87,6 +87,19 @@ TEST_CASE("cues: the camera flies there, the door swings, and all else changes a
     CHECK_FALSE(state["selection"].contains("node"));
 }
 
+TEST_CASE("cues: one may be seen from another place than its own, which stays") {
+    WithCues stage;
+    const json before = stage.state()["cues"];
+    CHECK(stage.rejection("a", R"({"type":"cue","id":7,"name":"Bare","camera":{"eye":[0,3,9]}})") == "");
+    CHECK(stage.camera().eye == glm::dvec3(0, 3, 9));
+    CHECK(stage.camera().fov == 20);
+    CHECK(stage.state()["cues"] == before);
+    CHECK(stage.rejection("a", R"({"type":"cue","id":8,"name":"Open","camera":{"eye":[0.5,0,0]}})") ==
+          "out-of-range");
+    CHECK(shown_cue(stage) == "Bare");
+    CHECK_FALSE(stage.room.moves());
+}
+
 TEST_CASE("cues: the next and the one before, by their order") {
     WithCues stage;
     CHECK(stage.rejection("a", step(-1)) == "unknown-cue");

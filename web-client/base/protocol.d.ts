@@ -55,6 +55,8 @@ export type ClientControl = {
 };
 
 export type ClientCue = {
+  /** Laid over the camera of the cue, which does not change. */
+  camera?: CameraOverlay;
   /** Asks for exactly one answer, which has the same `id`. It rises. */
   id?: number;
   /** Which. Without `step`. */
@@ -425,6 +427,8 @@ export type ClientSnapshot = {
     /** Edges only. */
     wireframe?: boolean;
   };
+  /** A pixel; without it as many as at full accuracy. */
+  samples?: number;
   type: 'snapshot';
   /** Pixels. */
   width: number;

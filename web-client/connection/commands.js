@@ -2,7 +2,7 @@ import { mergePatch } from '../base/merge-patch.js';
 
 /**
  * @import {
- *   ClientControl, ClientMessage, ClientOpen, ClientPick, ClientTree, ServerChecked, ServerShared, ServerTree, StatePatch,
+ *   ClientControl, ClientCue, ClientMessage, ClientSnapshot, ClientOpen, ClientPick, ClientTree, ServerChecked, ServerShared, ServerTree, StatePatch,
  * } from '../base/protocol.js'
  */
 
@@ -42,11 +42,11 @@ export function commandsBy({ ask, refused }) {
     tree: (query) => tell({ type: 'tree', ...query }),
     /** @param {{width: number, height: number}} size */
     snapshot: (size) => tell({ type: 'snapshot', ...size, jpegQuality: 95 }),
-    /** @param {{name: string}|{step: number}} which */
+    /** @param {{name: string, camera?: ClientCue['camera']}|{step: number}} which */
     cue: (which) => tell({ type: 'cue', ...which }),
     /** What of a list of cues does not go with the scene. @param {object} cues @returns {Promise<ServerChecked|undefined>} */
     check: (cues) => tell({ type: 'check', cues }),
-    /** Nothing where it cannot be drawn. @param {{width: number, height: number, cue: string}} picture */
+    /** Nothing where it cannot be drawn. @param {Omit<ClientSnapshot, 'type'>} picture */
     cuePicture: (picture) => ask({ type: 'snapshot', ...picture }).catch(() => undefined),
     /** @param {'start'|'stop'} action */
     record: (action) => tell({ type: 'record', action }),

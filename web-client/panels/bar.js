@@ -1,4 +1,3 @@
-import { cueAfter, cueNames } from '../base/cues.js';
 import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
@@ -6,6 +5,7 @@ import { rows, toggle } from './controls.js';
 import { CuePictures } from './cue-pictures.js';
 import { cueStrip } from './cue-strip.js';
 import { pointButton } from './pointing.js';
+import { Presentation } from './presentation.js';
 import { stateOf } from './section.js';
 import { Trail } from './trail.js';
 import { doorControl, variantControl, variants } from './variants.js';
@@ -17,7 +17,8 @@ import { viewNames } from './views-section.js';
  * @import { Commands } from '../connection/commands.js'
  * @import { Menu } from './menu.js'
  *
- * @typedef {{store: Store, commands: Commands, menu: Menu, report: (error: *) => void, turnPointing: () => void}} BarPage
+ * @typedef {{store: Store, commands: Commands, menu: Menu, report: (error: *) => void, turnPointing: () => void,
+ *   offer: (text: string, label: string, act: () => void) => void}} BarPage
  */
 
 /** Keys of presenters' clickers, and the steps that they take through the cues. */
@@ -34,7 +35,7 @@ export class Bar {
   #commands;
   #menu;
   #turnPointing;
-  #report;
+  #presentation;
   #pictures;
   #point = /** @type {?HTMLElement} */ (null);
   #cues = /** @type {?HTMLElement} */ (null);
@@ -47,9 +48,9 @@ export class Bar {
   #chosen = { key: '', at: -Infinity };
 
   /** Empty until `rebuild`. @param {BarPage} page */
-  constructor({ store, commands, menu, report, turnPointing }) {
+  constructor({ store, commands, menu, report, offer, turnPointing }) {
     this.#turnPointing = turnPointing;
-    this.#report = report;
+    this.#presentation = new Presentation({ store, commands, report, offer });
     this.#pictures = new CuePictures({ store, commands });
     this.#store = store;
     this.#commands = commands;
@@ -67,7 +68,8 @@ export class Bar {
     store.subscribe(({ state }) => [state?.scene], () => this.#open(null));
     store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes, state?.swings, state?.navigation],
       () => this.#showStrip());
-    store.subscribe(({ state, header }) => [state?.cues, state?.cue, header?.view], () => this.#showStrip());
+    store.subscribe(({ state, header, prepares, preparedCamera }) =>
+      [state?.cues, state?.cue, header?.view, prepares, preparedCamera === undefined], () => this.#showStrip());
     store.subscribe(({ points, language }) => [points, language], () => this.#showPoint());
     document.addEventListener('keydown', (event) => this.#key(event));
   }
@@ -81,19 +83,12 @@ export class Bar {
   /** In the menu and where something is typed, these keys have another meaning. @param {KeyboardEvent} event */
   #key(event) {
     const { key, target, altKey, ctrlKey, metaKey, shiftKey } = event;
-    const { role, state } = this.#store.now;
+    const { role } = this.#store.now;
     const isTyped = target instanceof Element && target.closest('input, textarea, select, dialog');
     if (!(key in STEPS) || altKey || ctrlKey || metaKey || shiftKey || isTyped) return;
-    if (role !== 'control' || cueNames(state?.cues).length === 0) return;
+    if (role !== 'control' || !this.#presentation.hasCues) return;
     event.preventDefault();
-    if (!event.repeat) this.#step(STEPS[key]);
-  }
-
-  /** @param {1|-1} by */
-  #step(by) {
-    const isThere = cueAfter(stateOf(this.#store), by) !== undefined;
-    if (isThere) this.#commands.cue({ step: by });
-    else this.#report(new Error(say(by > 0 ? 'cues.isLast' : 'cues.isFirst')));
+    if (!event.repeat) this.#presentation.step(STEPS[key]);
   }
 
   /** What this page sent. */
@@ -120,7 +115,7 @@ export class Bar {
     const point = pointButton(this.#turnPointing);
     this.#point = point;
     const cues = opens(say('cues.title'), 'present', () => cueStrip({
-      store: this.#store, commands: this.#commands, pictures: this.#pictures, step: (by) => this.#step(by),
+      store: this.#store, commands: this.#commands, pictures: this.#pictures, presentation: this.#presentation,
     }));
     this.#cues = cues;
     for (const spare of [sections, measures, point, cues]) spare.classList.add('spare');
@@ -158,6 +153,8 @@ export class Bar {
     if (!opener && this.#strip.contains(document.activeElement)) this.#opener?.focus();
     this.#opener = opener;
     this.#strip.hidden = !opener;
+    // What is prepared can be taken only there.
+    if (!opener) this.#store.set({ prepares: null });
     this.#showStrip = () => {};
     this.#strip.replaceChildren();
     if (!opener || !this.#store.now.state) return;

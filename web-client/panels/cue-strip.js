@@ -8,55 +8,65 @@ import { stateOf } from './section.js';
  * @import { Store } from '../base/store.js'
  * @import { Commands } from '../connection/commands.js'
  * @import { CuePictures } from './cue-pictures.js'
+ * @import { Presentation } from './presentation.js'
  */
 
 /**
  * What a presenter has before them: the words for the shown cue, the picture of the next one, and all of them in a row.
+ * While they prepare, a tap chooses what this page alone shows until it is taken.
  *
- * @param {{store: Store, commands: Commands, pictures: CuePictures, step: (by: 1|-1) => void}} page
+ * @param {{store: Store, commands: Commands, pictures: CuePictures, presentation: Presentation}} page
  */
-export function cueStrip({ store, commands, pictures, step }) {
+export function cueStrip({ store, commands, pictures, presentation }) {
   const state = () => stateOf(store);
   const picture = () => element('img', { alt: '', draggable: false });
   const words = element('p', { className: 'words', tabIndex: 0 });
   const nextPicture = picture();
   const nextName = element('span');
-  const next = button('', () => step(1));
+  const next = button('', () => presentation.step(1));
   next.replaceChildren(nextPicture, nextName);
-  const card = element('div', { className: 'speaker' }, words, next);
+  const prepare = button(say('cues.prepare'), () => presentation.turnPreparing(), { icon: 'hidden' });
+  const take = button(say('cues.take'), () => presentation.take(), { icon: 'present' });
+  const keep = button(say('cues.keep'), () => presentation.keep(), { icon: 'camera' });
+  take.classList.add('take');
+  const card = element('div', { className: 'speaker' }, words, element('div', { className: 'acts' }, prepare, keep, take), next);
   const list = rows(say('cues.title'), say('cues.none'), (name) => {
     const image = picture();
-    const chip = button('', () => commands.cue({ name }));
+    const chip = button('', () => (store.now.prepares === null ? commands.cue({ name }) : store.set({ prepares: name })));
     chip.replaceChildren(image, element('span', {}, name));
     return {
       children: [chip],
-      show({ isShown }) {
+      show({ isShown, isPrepared }) {
         pictures.show(image, name);
         if (isShown && chip.ariaPressed !== 'true') chip.scrollIntoView({ inline: 'center', block: 'nearest' });
         chip.ariaPressed = String(isShown);
+        chip.ariaCurrent = String(isPrepared);
       },
     };
   });
-  const before = button(say('cues.previous'), () => step(-1), { icon: 'open', only: true });
+  const before = button(say('cues.previous'), () => presentation.step(-1), { icon: 'open', only: true });
   before.classList.add('before');
-  const after = button(say('cues.next'), () => step(1), { icon: 'open', only: true });
+  const after = button(say('cues.next'), () => presentation.step(1), { icon: 'open', only: true });
   return {
     content: [element('div', { className: 'presenter' },
       card, element('div', { className: 'cues' }, before, list.element, after))],
     show() {
       const { cues, cue } = state();
+      const { prepares, preparedCamera } = store.now;
       const shown = cue?.name ?? '';
       const following = cueAfter(state(), 1);
-      words.textContent = cues[shown]?.text ?? '';
-      words.hidden = words.textContent === '';
-      next.hidden = following === undefined;
-      card.hidden = words.hidden && next.hidden;
+      words.textContent = cues[prepares ?? shown]?.text ?? '';
+      next.hidden = prepares !== null || following === undefined;
+      card.hidden = Object.keys(cues).length === 0;
+      prepare.ariaPressed = String(prepares !== null);
+      take.hidden = prepares === null;
+      keep.hidden = prepares === null || preparedCamera === undefined;
       if (following !== undefined) {
         nextName.textContent = say('cues.nextIs', { name: following });
         pictures.show(nextPicture, following);
       }
       before.hidden = after.hidden = Object.keys(cues).length < 2;
-      list.show(cueNames(cues).map((name) => [name, { isShown: name === shown }]));
+      list.show(cueNames(cues).map((name) => [name, { isShown: name === shown, isPrepared: name === prepares }]));
     },
   };
 }

@@ -1,7 +1,7 @@
-import { distance } from '../base/vectors.js';
 import { isSamePose, withOrthogonalUp } from '../navigation/camera.js';
 import { CameraPath } from '../navigation/flight.js';
 import { Gestures } from '../navigation/gestures.js';
+import { contextOf, movedBy } from '../navigation/input.js';
 
 /**
  * @import { FrameHeader, StateDocument } from '../base/protocol.js'
@@ -166,20 +166,7 @@ export class Prediction {
       ...this.#context(),
       surfaceAt: (from, place) => (message.touched ??= this.#surfaceAt?.(from, place) ?? undefined) ?? null,
     };
-    switch (message.type) {
-      case 'wheel':
-        return gestures.wheel(message, camera, context);
-      case 'keydown':
-        return gestures.keyDown(message, camera, context) ?? camera;
-      case 'keyup':
-        gestures.keyUp(message);
-        return camera;
-      case undefined:
-        gestures.restart(camera);
-        return camera;
-      default:
-        return gestures.pointer(message, camera, context);
-    }
+    return movedBy(gestures, message, camera, context);
   }
 
   #fly({ id, keyframes, easing }) {
@@ -211,19 +198,7 @@ export class Prediction {
 
   /** @returns {NavigationContext} */
   #context() {
-    const { scene, navigation, views } = /** @type {StateDocument} */ (this.#state);
-    const { width, height } = /** @type {FrameHeader} */ (this.#shown).view;
-    const { turnAbout, ...rules } = navigation;
-    return {
-      ...rules,
-      width,
-      height,
-      radius: distance(scene.bounds.min, scene.bounds.max) / 2,
-      turnAboutTouched: turnAbout === 'touched',
-      surfaceAt: this.#surfaceAt,
-      looksAroundFrom: (eye) => scene.seats.some((seat) => distance(seat.eye, eye) <= seat.radius),
-      home: views.home,
-    };
+    return contextOf(/** @type {StateDocument} */ (this.#state), /** @type {FrameHeader} */ (this.#shown).view, this.#surfaceAt);
   }
 }
 

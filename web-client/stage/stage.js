@@ -13,6 +13,7 @@ import { PlaneHandle } from './plane-handle.js';
 import { PointedMarks } from './pointed-marks.js';
 import { Pointer } from './pointer.js';
 import { Prediction } from './prediction.js';
+import { Preparation } from './preparation.js';
 import { Presence } from './presence.js';
 import { Snapper } from './snapper.js';
 import { freeOf, watchViewSize } from './view-size.js';
@@ -44,6 +45,7 @@ export class Stage {
   #handle;
   #snapper;
   #pointer;
+  #preparation;
   #noticesSeen = new Set();
   #controlBar;
   #input;
@@ -100,7 +102,15 @@ export class Stage {
         this.#move();
       },
       marks: new FingerMarks(find('finger-marks')),
-      unheard: () => this.#controlBar.offer(),
+      unheard: () => this.#preparation.isOn || this.#controlBar.offer(),
+    });
+    this.#preparation = new Preparation(find('prepare'), {
+      draw: commands.cuePicture,
+      state: () => store.now.state,
+      view: () => store.now.header?.view ?? { width: 16, height: 9, pixelRatio: 1 },
+      mapping: () => this.#picture.mapping(),
+      rules: () => connection.input,
+      moved: (preparedCamera) => store.set({ preparedCamera }),
     });
     this.#canvas.addEventListener('pointerdown', () => {
       // Who touches the picture means it with the keys, too.
@@ -137,6 +147,11 @@ export class Stage {
     store.subscribe(
       ({ role, state, language }) => [role, state?.scene, state?.selection, state?.nodes, language],
       () => partBar.show(store.now));
+    store.subscribe(({ prepares, steers, state, hasPicture }) => [steers && hasPicture ? prepares : null, state?.cues],
+      (prepares) => {
+        this.#preparation.show(prepares);
+        this.#input.enabled = store.now.steers && !this.#preparation.isOn;
+      });
     store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());
     store.subscribe(({ steers, state, handled, inset }) => [steers, state?.sections, handled, inset],
       () => this.#showHandle());
@@ -152,7 +167,7 @@ export class Stage {
 
   /** Another phase of the connection has begun. */
   phase() {
-    this.#input.enabled = this.#store.now.steers;
+    this.#input.enabled = this.#store.now.steers && !this.#preparation.isOn;
     this.#prediction.forget();
     this.#pointed.clear();
     this.#move();
@@ -185,7 +200,7 @@ export class Stage {
   /** Before the next event, which counts only from who steers. @param {StateDocument} state */
   follow(state) {
     const { steers } = this.#store.now;
-    this.#input.enabled = steers;
+    this.#input.enabled = steers && !this.#preparation.isOn;
     this.#prediction.follow(state, steers);
     this.#move();
   }
