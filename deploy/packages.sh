@@ -12,6 +12,9 @@ BUILD_PACKAGES=(
     libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev libwebp-dev libtiff-dev libstb-dev zlib1g-dev libssl-dev libqrencode-dev libnats-dev
     libosd-dev libassimp-dev libmeshoptimizer-dev libdraco-dev esbuild:esbuild
 )
+# To build it with films (.mp4), which it leaves out without them. They bring the libraries that it loads for one.
+# shellcheck disable=SC2034
+FILM_PACKAGES=(libavformat-dev libavcodec-dev libswscale-dev)
 # To run: EGL, and Mesa's drivers, with one that draws in software where there is no GPU; and the libraries that the
 # program is linked with.
 # shellcheck disable=SC2034

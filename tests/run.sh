@@ -80,7 +80,7 @@ sources() { # EXTENSION...
 
 packages() {
     local wanted=("${BUILD_PACKAGES[@]}" "${RUN_PACKAGES[@]}" "${TEST_PACKAGES[@]}")
-    if $ci; then wanted+=("${ALL_TEST_PACKAGES[@]}" "${PACKAGING_PACKAGES[@]}"); fi
+    if $ci; then wanted+=("${FILM_PACKAGES[@]}" "${ALL_TEST_PACKAGES[@]}" "${PACKAGING_PACKAGES[@]}"); fi
     install_packages "${wanted[@]}"
 }
 

@@ -19,6 +19,10 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_NAME ${PROJECT_NAME})
 set(CPACK_DEBIAN_SERVER_PACKAGE_SECTION graphics)
 # A driver, which no program is linked with: one that draws in software is among Mesa's.
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "libgl1-mesa-dri")
+# Loaded when a film is written.
+if(LIBAV_FOUND)
+    set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "libavformat59, libswscale6")
+endif()
 set(CPACK_DEBIAN_SERVER_PACKAGE_SUGGESTS "haproxy, nats-server")
 set(CPACK_DEBIAN_SERVER_DESCRIPTION "remote preview renderer for automotive VR
 A server that draws a scene, as a car, without a window, and sends images

@@ -394,16 +394,23 @@ void add_camera(Command& command, RenderArguments& arguments) {
         ->group(kCamera);
 }
 
+template <class Number>
+CLI::Option* add_images_per_second(Command& command, Number& target) {
+    return add_number(command, "--fps", target, 1, 240, "Show N images of the film a second")
+        ->default_str(std::to_string(kImagesPerSecond))
+        ->group(kOutput);
+}
+
 void add_film(Command& command, RenderArguments& arguments) {
     auto* keyframes =
         add_file(command, "--keyframes", arguments.keyframes,
                  "Draw the flight of this JSON file, which has the members of the protocol's message 'fly'.")
             ->group(kCamera);
-    auto* frames =
-        add_number(command, "--frames", arguments.frames, 2, 100'000, "Draw N images of the flight")
-            ->needs(keyframes)
-            ->group(kCamera);
-    keyframes->needs(frames);
+    add_number(command, "--frames", arguments.frames, 2, kMostImages, "Draw N images of the flight")
+        ->default_str("as many as --fps shows while it lasts")
+        ->needs(keyframes)
+        ->group(kCamera);
+    add_images_per_second(command, arguments.fps)->needs(keyframes);
     add_nats(command, arguments.nats, "Let the workers of this NATS server draw (see 'worker').")
         ->excludes(command.get_option("--textures"));
 }
@@ -446,10 +453,13 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
         "The image shows the first view of the scene, unless options choose another one. --eye, --focus, "
         "--up and --fov have priority over --camera, and --camera has priority over --set.",
         "With --keyframes it draws a film: the images of a flight, in equal times from its start to its end. "
-        "Their names have a number behind that of --output: film-0001.png, film-0002.png and so on."};
+        "Where --output ends in .mp4 they become one file, H.264 where libx264 is there, else MPEG-4. Else "
+        "their names have a number behind that of --output: film-0001.png, film-0002.png and so on."};
     add_file(*command, "SCENE", arguments.scene, "Draw this scene file.")->required();
     add_file(*command, "-o,--output", arguments.output,
-             "Write the image to this file, whose name ends in .png, .jpg or .jpeg.")
+             "Write the image to this file, whose name ends in .png, .jpg or .jpeg, or the film to one that "
+             "ends in "
+             ".mp4.")
         ->required()
         ->group(kOutput);
     add_size(*command, arguments.width, arguments.height)->group(kOutput);
@@ -509,6 +519,19 @@ std::shared_ptr<Command> describe_worker(WorkerArguments& arguments) {
     return command;
 }
 
+void add_session_film(Command& command, ReplayArguments& arguments) {
+    auto* film = add_file(command, "--film", arguments.film,
+                          "Write what the session showed as a film to this file, whose name ends in .mp4; or "
+                          "as numbered images, where it ends in .png, .jpg or .jpeg.")
+                     ->excludes(command.get_option("--out"))
+                     ->group(kOutput);
+    add_size(command, arguments.width, arguments.height)
+        ->default_str("that of the first view, with even sides")
+        ->needs(film)
+        ->group(kOutput);
+    add_images_per_second(command, arguments.fps)->needs(film);
+}
+
 std::shared_ptr<Command> describe_replay(ReplayArguments& arguments) {
     auto command = std::make_shared<Command>("Replay a recorded session.", "replay");
     command->description = {
@@ -523,12 +546,14 @@ std::shared_ptr<Command> describe_replay(ReplayArguments& arguments) {
     add_folder(*command, "--out", arguments.frames,
                "Write the frames of the session to this folder, as JPEG.")
         ->group(kOutput);
+    add_session_film(*command, arguments);
     add_device(*command, arguments.device);
     command->exit_statuses = statuses("The session is replayed.");
     command->examples = {
         {"vrut-preview replay recordings/session.jsonl", "Print the last camera of a session."},
         {"vrut-preview replay recordings/session.jsonl --out frames", "Draw its frames too."},
-        {"vrut-preview replay recordings/session.jsonl --scene my.vrut", "Replay it on another scene."}};
+        {"vrut-preview replay recordings/session.jsonl --film film.png --fps 5",
+         "Draw five images of each second."}};
     command->callback([&arguments] { replay_command(arguments); });
     return command;
 }

@@ -42,6 +42,9 @@ struct EdgeArguments {
 };
 void edge_command(const EdgeArguments& arguments);
 
+inline constexpr int kImagesPerSecond = 30;  ///< of films, where nothing else is asked for
+inline constexpr int kMostImages = 100'000;  ///< of a flight
+
 struct RenderArguments {
     std::filesystem::path scene, output;
     io::ReadOptions read = kShown;
@@ -53,7 +56,8 @@ struct RenderArguments {
     std::optional<glm::dvec3> eye, focus, up;
     std::optional<double> fov;
     std::filesystem::path keyframes;  ///< of a film; empty: one image
-    int frames = 0;                   ///< of the film
+    int frames = 0;                   ///< of the film; 0: as many as `fps` makes of its time
+    std::optional<int> fps;           ///< images a second
     std::string nats;  ///< the address of NATS, whose workers draw the film; empty: this machine
     std::string set;   ///< a merge patch on the state
     std::vector<std::pair<std::string, std::string>>
@@ -79,6 +83,9 @@ struct ReplayArguments {
     std::filesystem::path scene;  ///< empty: the log's own, looked for beside it and among the program's
     io::ReadOptions read = kShown;
     std::filesystem::path frames;  ///< folder for the frames; empty: none are drawn
+    std::filesystem::path film;    ///< of the session; empty: none
+    int width = 0, height = 0;     ///< of the film; 0: those of the session's first view
+    int fps = kImagesPerSecond;    ///< of the film
     std::optional<int> device;
 };
 void replay_command(const ReplayArguments& arguments);

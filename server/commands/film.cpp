@@ -1,5 +1,6 @@
 #include "commands/film.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -55,6 +56,19 @@ scene::Camera wanted_camera(const RenderArguments& arguments, const room::Room& 
     return *camera;
 }
 
+/// How many there are of a flight of so many milliseconds. Throws std::runtime_error where it is too many.
+int images_of(const RenderArguments& arguments, double ms) {
+    if (arguments.frames > 0) return arguments.frames;
+    const int images_per_second = arguments.fps.value_or(kImagesPerSecond);
+    const double images = std::round(ms / 1000 * images_per_second) + 1;
+    if (images > kMostImages)
+        throw std::runtime_error(
+            arguments.keyframes.string() + ": the flight takes " + std::to_string(std::lround(ms / 1000)) +
+            " s, which needs more than " + std::to_string(kMostImages) + " images at " +
+            std::to_string(images_per_second) + " a second; give --frames or a lower --fps");
+    return static_cast<int>(images);
+}
+
 /// Of each image: the one that the options give, or those of a flight that begins there, in equal times.
 std::vector<scene::Camera> wanted_cameras(const RenderArguments& arguments, const room::Room& room) {
     const scene::Camera first = wanted_camera(arguments, room);
@@ -66,9 +80,9 @@ std::vector<scene::Camera> wanted_cameras(const RenderArguments& arguments, cons
     if (!flight) fail(flight.error());
     const auto path = room::flight_path(*flight, first, room.scene());
     if (!path) fail(path.error());
+    const int last = images_of(arguments, path->duration()) - 1;
     std::vector<scene::Camera> cameras;
-    cameras.reserve(static_cast<std::size_t>(arguments.frames));
-    const int last = arguments.frames - 1;
+    cameras.reserve(static_cast<std::size_t>(last) + 1);
     for (int i = 0; i < last; ++i) cameras.push_back(path->at(path->duration() * i / last));
     cameras.push_back(path->at(path->duration()));
     return cameras;
@@ -108,8 +122,8 @@ void add_levels(plan::View& view) {
     view.levels = levels;
 }
 
-void require_size(const plan::View& view, const renderer::Renderer& renderer) {
-    if (std::max(view.width, view.height) > renderer.max_size())
+void require_size(int width, int height, const renderer::Renderer& renderer) {
+    if (std::max(width, height) > renderer.max_size())
         throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +
                                  " pixels a side");
 }
@@ -118,7 +132,8 @@ protocol::ImageFormat format_of(const std::filesystem::path& output) {
     const std::string extension = output.extension().string();
     if (extension == ".png") return protocol::ImageFormat::png;
     if (extension == ".jpg" || extension == ".jpeg") return protocol::ImageFormat::jpeg;
-    throw std::runtime_error(output.string() + ": the name of an image ends in .png, .jpg or .jpeg");
+    throw std::runtime_error(output.string() +
+                             ": the name of an image ends in .png, .jpg or .jpeg, that of a film in .mp4");
 }
 
 std::vector<std::uint8_t> encoded(const scene::Image& image, protocol::ImageFormat format, int jpeg_quality) {

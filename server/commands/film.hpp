@@ -25,7 +25,7 @@ Film film_of(const RenderArguments& arguments);
 void add_levels(plan::View& view);
 
 /// Throws std::runtime_error where the device cannot draw images of that size.
-void require_size(const plan::View& view, const renderer::Renderer& renderer);
+void require_size(int width, int height, const renderer::Renderer& renderer);
 
 /// By the name's ending. Throws std::runtime_error where it is of another format.
 protocol::ImageFormat format_of(const std::filesystem::path& output);

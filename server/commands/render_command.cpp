@@ -1,5 +1,3 @@
-#include <array>
-#include <future>
 #include <iostream>
 #include <set>
 #include <stdexcept>
@@ -7,6 +5,7 @@
 #include "base/files.hpp"
 #include "commands/commands.hpp"
 #include "commands/film.hpp"
+#include "commands/image_output.hpp"
 #include "commands/stop_signals.hpp"
 #include "engine/images.hpp"
 #include "nats/render_queue.hpp"
@@ -17,18 +16,9 @@
 
 namespace vrut::server::commands {
 
-namespace {
+namespace fs = std::filesystem;
 
-/// Of image `i`, from 0. Those of films have numbers, from 0001.
-std::filesystem::path output_of(const RenderArguments& arguments, std::size_t i) {
-    if (arguments.keyframes.empty()) return arguments.output;
-    const std::string number = std::to_string(i + 1);
-    std::filesystem::path path = arguments.output;
-    path.replace_filename(path.stem().string() + "-" +
-                          std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number +
-                          path.extension().string());
-    return path;
-}
+namespace {
 
 /// Node ids as 24-bit RGB, white for none. Throws std::runtime_error where one is too high.
 scene::Image picture_of_ids(const plan::View& view, const std::vector<scene::Index>& nodes) {
@@ -50,9 +40,10 @@ scene::Image picture_of_ids(const plan::View& view, const std::vector<scene::Ind
     return image;
 }
 
-void write_picture(const RenderArguments& arguments, const std::filesystem::path& output,
-                   const scene::Image& image) {
-    base::write_file(output, encoded(image, format_of(output), arguments.jpeg_quality));
+ImageOutput output_of(const RenderArguments& arguments, const Film& film) {
+    return ImageOutput({arguments.output, arguments.width, arguments.height,
+                        arguments.fps.value_or(kImagesPerSecond), arguments.jpeg_quality, film.cameras.size(),
+                        !arguments.keyframes.empty(), !arguments.stats});
 }
 
 void write_ids(const RenderArguments& arguments, const plan::View& view,
@@ -74,15 +65,18 @@ void require_surfaces_only(const plan::View& view) {
 void trace_film(const RenderArguments& arguments, Film film) {
     plan::View& view = film.view;
     require_surfaces_only(view);
-    for (std::size_t i = 0; i < film.cameras.size(); ++i) {
-        view.camera = film.cameras[i];
+    ImageOutput output = output_of(arguments, film);
+    for (const scene::Camera& camera : film.cameras) {
+        view.camera = camera;
         const reference::ReferenceImage picture = reference::trace(view);
         if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
-        write_picture(arguments, output_of(arguments, i), reference::image_of(picture));
+        scene::Image image = reference::image_of(picture);
+        output.add(image);
         if (!arguments.unrounded.empty())
             base::write_file(arguments.unrounded,
                              engine::encode_pfm(picture.width, picture.height, picture.color));
     }
+    output.finish();
 }
 
 void print_stats(const std::string& device, const plan::View& view, const plan::FrameStats& stats) {
@@ -96,21 +90,18 @@ void draw_film(const RenderArguments& arguments, Film film) {
     plan::View& view = film.view;
     add_levels(view);
     renderer::Renderer renderer(arguments.device);
-    require_size(view, renderer);
-    std::array<scene::Image, 2> images;  // one is drawn while the other is encoded and written
-    std::future<void> written;
-    for (std::size_t i = 0; i < film.cameras.size(); ++i) {
-        view.camera = film.cameras[i];
+    require_size(view.width, view.height, renderer);
+    ImageOutput output = output_of(arguments, film);
+    scene::Image image;
+    for (const scene::Camera& camera : film.cameras) {
+        view.camera = camera;
         if (!arguments.ids.empty()) write_ids(arguments, view, renderer.node_ids(view));
-        scene::Image& image = images[i % 2];
         plan::FrameStats stats;
         renderer.render(view, image, stats);
-        if (written.valid()) written.get();
-        written = std::async(std::launch::async,
-                             [&, i] { write_picture(arguments, output_of(arguments, i), image); });
+        output.add(image);
         if (arguments.stats) print_stats(renderer.description(), view, stats);
     }
-    written.get();
+    output.finish();
 }
 
 /// All that workers need to draw it.
@@ -161,15 +152,37 @@ void collect_film(const RenderArguments& arguments) {
                 observe::log_warning("worker_problem", {{"reason", result->problem}});
             continue;
         }
-        base::write_file(output_of(arguments, static_cast<std::size_t>(result->image) - 1), result->file);
+        const fs::path path = arguments.keyframes.empty()
+                                  ? arguments.output
+                                  : numbered(arguments.output, static_cast<std::size_t>(result->image) - 1);
+        base::write_file(path, result->file);
         ++written;
     }
+}
+
+/// Before anything is read: throws where the output cannot be what the arguments say.
+void require_render_output(const RenderArguments& arguments) {
+    const std::string& name = arguments.output.string();
+    if (!is_film(arguments.output)) {
+        format_of(arguments.output);
+        if (arguments.frames > 0 && arguments.fps)
+            throw std::invalid_argument("--fps: " + std::to_string(arguments.frames) +
+                                        " numbered images have no speed; leave out --fps or --frames");
+        return;
+    }
+    if (arguments.keyframes.empty())
+        throw std::invalid_argument(name + ": a film needs --keyframes; name a single image .png or .jpg");
+    if (!arguments.nats.empty())
+        throw std::invalid_argument(name + ": workers draw no film; name it " +
+                                    arguments.output.stem().string() +
+                                    ".png for numbered images, or leave out --nats");
+    require_film(arguments.output, arguments.width, arguments.height);
 }
 
 }  // namespace
 
 void render_command(const RenderArguments& arguments) {
-    format_of(arguments.output);
+    require_render_output(arguments);
     if (!arguments.nats.empty()) return collect_film(arguments);
     Film film = film_of(arguments);
     if (arguments.reference)

@@ -4,6 +4,8 @@
 
 #include "base/files.hpp"
 #include "commands/commands.hpp"
+#include "commands/film.hpp"
+#include "commands/image_output.hpp"
 #include "commands/session_scenes.hpp"
 #include "engine/encoder.hpp"
 #include "engine/frame_quality.hpp"
@@ -59,25 +61,109 @@ private:
     engine::JpegEncoder jpeg_;
 };
 
+/// The film's size: as asked for, else that of the log's first view, made even.
+engine::PictureSize size_of_film(const ReplayArguments& arguments, const protocol::LogHeader& header) {
+    if (arguments.width > 0) return {arguments.width, arguments.height};
+    const auto even = [](int side) { return std::max(2, side - side % 2); };
+    const engine::PictureSize view = engine::picture_size(header.view, 1);
+    return {even(view.width), even(view.height)};
+}
+
+/// Draws what the session showed, in equal steps of its time.
+class SessionFilm {
+public:
+    SessionFilm(const ReplayArguments& arguments, const room::EventLog& log)
+        : images_per_second_(arguments.fps),
+          size_(size_of_film(arguments, log.header)),
+          renderer_(arguments.device),
+          output_({arguments.film, size_.width, size_.height, arguments.fps, kJpegQuality, images_of(log),
+                   true}) {
+        require_size(size_.width, size_.height, renderer_);
+    }
+
+    /// What is shown at each step before `at`, behind which the room stands.
+    void draw_until(room::SessionTime at, room::Room& room) {
+        while (time_of(next_) < at) draw_next(room);
+    }
+
+    /// What is shown at the end.
+    void finish(room::Room& room) {
+        draw_next(room);
+        output_.finish();
+    }
+
+private:
+    static constexpr int kJpegQuality = 90;
+    static constexpr std::int64_t kSecond = 1'000'000;  // of room::SessionTime
+
+    room::SessionTime time_of(std::size_t image) const {
+        return room::SessionTime(kSecond * static_cast<std::int64_t>(image) / images_per_second_);
+    }
+
+    /// How many there are from the start to the end of the session, or behind it.
+    std::size_t images_of(const room::EventLog& log) const {
+        const std::int64_t end = log.lines.empty() ? 0 : log.lines.back().at.count();
+        return static_cast<std::size_t>(
+            (std::max<std::int64_t>(end, 0) * images_per_second_ + kSecond - 1) / kSecond + 1);
+    }
+
+    void draw_next(room::Room& room) {
+        room.advance(time_of(next_++));
+        plan::View view = room.visible();
+        view.width = size_.width;
+        view.height = size_.height;
+        view.samples = samples_of(engine::Refinement::better);
+        if (drawn_ == view) return output_.repeat();
+        plan::FrameStats stats;
+        renderer_.render(view, image_, stats);
+        output_.add(image_);
+        drawn_ = std::move(view);
+    }
+
+    const int images_per_second_;
+    const engine::PictureSize size_;
+    renderer::Renderer renderer_;
+    ImageOutput output_;
+    std::size_t next_ = 0;  // image
+    scene::Image image_;
+    std::optional<plan::View> drawn_;  // last
+};
+
+/// Before anything is read: throws where the film cannot be what the arguments say.
+void require_replay_output(const ReplayArguments& arguments) {
+    if (arguments.film.empty()) return;
+    if (is_film(arguments.film))
+        require_film(arguments.film, arguments.width, arguments.height);
+    else
+        format_of(arguments.film);
+}
+
 }  // namespace
 
 void replay_command(const ReplayArguments& arguments) {
+    require_replay_output(arguments);
     const auto log = room::read_event_log(std::ifstream(arguments.log), arguments.log.string());
     if (!log) throw std::runtime_error(log.error());
     if (!log->cut.empty()) observe::log_warning("log_cut_off", {{"reason", log->cut}});
     std::optional<FrameWriter> frames;
     if (!arguments.frames.empty()) frames.emplace(arguments.frames, arguments.device);
+    std::optional<SessionFilm> film;
+    if (!arguments.film.empty()) film.emplace(arguments, *log);
     SessionScenes scenes(arguments.log, arguments.scene, arguments.read);
     room::ReplayWatcher watcher;
     if (frames)
         watcher.on_drawn = [&](std::int64_t frame, const room::Room& room) { frames->write(frame, room); };
+    if (film)
+        watcher.before_line = [&](room::SessionTime at, room::Room& room) { film->draw_until(at, room); };
     const auto finder = [&](const std::string& name, const std::string& sha256,
                             std::optional<protocol::UpAxis> up_axis) {
         return scenes.find(name, sha256, up_axis);
     };
-    const auto room = room::replay(*log, finder, watcher);
+    auto room = room::replay(*log, finder, watcher);
     if (!room) throw std::runtime_error(arguments.log.string() + ": " + room.error());
-    std::cout << protocol::encode(room->state().camera) << std::endl;
+    const std::string camera = protocol::encode(room->state().camera);
+    if (film) film->finish(*room);
+    std::cout << camera << std::endl;
 }
 
 }  // namespace vrut::server::commands

@@ -70,7 +70,7 @@ private:
             arguments.scene = *path;
             view_ = film_of(arguments).view;
             if (scenes::sha256_of_scene(*view_.scene->scene) != job.sha256) continue;
-            require_size(view_, renderer_);
+            require_size(view_.width, view_.height, renderer_);
             add_levels(view_);
             prepared_ = wanted;
             return;

@@ -130,8 +130,30 @@ test('render draws a film: its images begin at the camera, pass the keyframes in
   assert.deepEqual([fs.existsSync(file('film.png')), fs.existsSync(file('film-0007.png'))], [false, false]);
   draw('traced.jpg', '--keyframes', file('flight.json'), '--frames', '2', '--reference', '--eye', '5,1,1');
   assert.equal(fs.readFileSync(file('traced-0002.jpg')).readUInt16BE(0), 0xffd8);
-  fails(2, /--keyframes requires --frames/, 'render', CAR, '-o', file('x.png'), '--keyframes', file('flight.json'));
   fails(2, /--frames requires --keyframes/, 'render', CAR, '-o', file('x.png'), '--frames', '3');
+});
+
+test('a film that cannot be is rejected before the scene is read', (t) => {
+  const none = file('no-scene.vrut');
+  const film = (...options) => ['render', none, '-o', file('my.mp4'), '--keyframes', file('flight.json'), ...options];
+  fails(2, /my\.mp4: a film needs --keyframes/, 'render', none, '-o', file('my.mp4'));
+  fails(2, /my\.mp4: workers draw no film; name it my\.png/, ...film('--nats', 'nats://127.0.0.1'));
+  fails(2, /--size: .* for 641x361 is 642x362/, ...film('--size', '641x361'));
+  fails(2, /--size: .* for 641x360 is 642x360/, 'replay', none, '--film', file('my.mp4'), '--size', '641x360');
+  fails(2, /--fps: 3 numbered images have no speed; leave out --fps or --frames/,
+    'render', none, '-o', file('my.png'), '--keyframes', file('flight.json'), '--frames', '3', '--fps', '3');
+  fails(2, /--fps/, ...film('--fps', '0'));
+  fails(2, /--fps requires --film/, 'replay', none, '--fps', '5');
+  fails(2, /--out excludes --film/, 'replay', none, '--film', file('my.mp4'), '--out', folder);
+  fails(1, /my\.webm: .* that of a film in \.mp4/, 'replay', none, '--film', file('my.webm'));
+  fs.writeFileSync(file('long.json'), '{"keyframes":[{"at":4e6,"camera":{"fov":30}}]}');
+  fails(1, /long\.json: the flight takes 4000 s, which needs more than 100000 images at 30 a second; give --frames or a lower --fps/,
+    'render', CAR, '-o', file('x.png'), '--keyframes', file('long.json'));
+
+  const { status, stderr } = run(...film());
+  if (/built without libavformat/.test(stderr)) return t.skip('the program is built without libavformat');
+  assert.equal(status, 1);
+  assert.match(stderr, /no-scene\.vrut: there is no such file/);
 });
 
 test('what is left out of a scene is told on standard error, and the picture drawn', () => {
