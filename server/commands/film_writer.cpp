@@ -33,16 +33,20 @@ namespace {
 /// Those that need no device, the better one first.
 constexpr std::array kEncoders{"libx264", "mpeg4"};
 
-/// With constant quality, near what the eye can tell from the images. One thread: how many there are decides
-/// about the bytes.
+/// How many there are decides about the bytes, so it is the same everywhere.
+constexpr int kThreads = 4;
+
+/// Constant, near what the eye can tell from the images.
 void set_quality(AVCodecContext& codec) {
-    codec.thread_count = 1;
+    codec.thread_count = kThreads;
     codec.flags |= AV_CODEC_FLAG_BITEXACT;
     if (codec.codec_id == AV_CODEC_ID_MPEG4) {
         codec.flags |= AV_CODEC_FLAG_QSCALE;
         codec.global_quality = 2 * FF_QP2LAMBDA;
     } else {
         libav().av_opt_set(codec.priv_data, "crf", "18", 0);
+        // Else some of its routines depend on the processor, and on what memory held before (x264 164).
+        libav().av_opt_set(codec.priv_data, "x264-params", "cpu-independent=1", 0);
     }
 }
 

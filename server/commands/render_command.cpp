@@ -1,13 +1,16 @@
 #include <iostream>
+#include <map>
 #include <set>
 #include <stdexcept>
 
 #include "base/files.hpp"
 #include "commands/commands.hpp"
 #include "commands/film.hpp"
+#include "commands/film_writer.hpp"
 #include "commands/image_output.hpp"
 #include "commands/stop_signals.hpp"
 #include "engine/images.hpp"
+#include "io/image/image_file.hpp"
 #include "nats/render_queue.hpp"
 #include "observe/log.hpp"
 #include "reference/reference.hpp"
@@ -117,7 +120,7 @@ std::vector<protocol::RenderJob> jobs_of(const RenderArguments& arguments, const
     job.height = arguments.height;
     job.samples = arguments.samples;
     job.detail = arguments.detail;
-    job.format = format_of(arguments.output);
+    job.format = is_film(arguments.output) ? protocol::ImageFormat::png : format_of(arguments.output);
     job.jpeg_quality = arguments.jpeg_quality;
     job.patches.push_back(arguments.set.empty() ? "{}" : arguments.set);
     for (const auto& [option, patch] : arguments.patches) job.patches.push_back(patch);
@@ -130,19 +133,60 @@ std::vector<protocol::RenderJob> jobs_of(const RenderArguments& arguments, const
     return jobs;
 }
 
-/// By workers. Each image is written when it comes, whole.
+/// Takes the files of images in any order: into one film, or each into its own file at once.
+class ImageCollector {
+public:
+    explicit ImageCollector(const RenderArguments& arguments) : arguments_(arguments) {
+        if (is_film(arguments.output))
+            film_.emplace(arguments.output, arguments.width, arguments.height,
+                          arguments.fps.value_or(kImagesPerSecond));
+    }
+
+    /// `number`: from 1. Throws std::runtime_error with a sentence.
+    void take(int number, const std::vector<std::uint8_t>& file) {
+        if (film_) return take_for_film(number, file);
+        base::write_file(arguments_.keyframes.empty()
+                             ? arguments_.output
+                             : numbered(arguments_.output, static_cast<std::size_t>(number) - 1),
+                         file);
+    }
+    void finish() {
+        if (film_) film_->finish();
+    }
+
+private:
+    void take_for_film(int number, const std::vector<std::uint8_t>& file) {
+        early_.emplace(number, file);
+        for (auto next = early_.begin(); next != early_.end() && next->first == added_ + 1; ++added_) {
+            const auto image =
+                io::decode_image({reinterpret_cast<const char*>(next->second.data()), next->second.size()});
+            if (!image)
+                throw std::runtime_error("image " + std::to_string(next->first) + ": " + image.error());
+            film_->add(*image);
+            next = early_.erase(next);
+        }
+    }
+
+    const RenderArguments& arguments_;
+    std::optional<FilmWriter> film_;
+    std::map<int, std::vector<std::uint8_t>> early_;  // by number: those before them are not in the film yet
+    int added_ = 0;
+};
+
+/// By workers.
 void collect_film(const RenderArguments& arguments) {
     const StopSignals stop;
     const nats::Connection connection(arguments.nats);
     nats::FilmQueue queue(connection, nats::random_id());
     const Film film = film_of(arguments);
+    ImageCollector collector(arguments);
     for (const protocol::RenderJob& job : jobs_of(arguments, film, queue.run())) queue.post(job);
     const std::size_t images = film.cameras.size();
     std::set<std::string> known_problems;
     for (std::size_t written = 0; written < images;) {
         if (stop.came())
             throw std::runtime_error("a signal stopped the film: " + std::to_string(written) + " of " +
-                                     std::to_string(images) + " images are written");
+                                     std::to_string(images) + " images are drawn");
         const std::optional<nats::FilmQueue::Result> result = queue.next();
         if (!result) continue;
         if (result->given_up)
@@ -152,12 +196,10 @@ void collect_film(const RenderArguments& arguments) {
                 observe::log_warning("worker_problem", {{"reason", result->problem}});
             continue;
         }
-        const fs::path path = arguments.keyframes.empty()
-                                  ? arguments.output
-                                  : numbered(arguments.output, static_cast<std::size_t>(result->image) - 1);
-        base::write_file(path, result->file);
+        collector.take(result->image, result->file);
         ++written;
     }
+    collector.finish();
 }
 
 /// Before anything is read: throws where the output cannot be what the arguments say.
@@ -172,10 +214,6 @@ void require_render_output(const RenderArguments& arguments) {
     }
     if (arguments.keyframes.empty())
         throw std::invalid_argument(name + ": a film needs --keyframes; name a single image .png or .jpg");
-    if (!arguments.nats.empty())
-        throw std::invalid_argument(name + ": workers draw no film; name it " +
-                                    arguments.output.stem().string() +
-                                    ".png for numbered images, or leave out --nats");
     require_film(arguments.output, arguments.width, arguments.height);
 }
 

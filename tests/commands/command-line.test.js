@@ -137,7 +137,6 @@ test('a film that cannot be is rejected before the scene is read', (t) => {
   const none = file('no-scene.vrut');
   const film = (...options) => ['render', none, '-o', file('my.mp4'), '--keyframes', file('flight.json'), ...options];
   fails(2, /my\.mp4: a film needs --keyframes/, 'render', none, '-o', file('my.mp4'));
-  fails(2, /my\.mp4: workers draw no film; name it my\.png/, ...film('--nats', 'nats://127.0.0.1'));
   fails(2, /--size: .* for 641x361 is 642x362/, ...film('--size', '641x361'));
   fails(2, /--size: .* for 641x360 is 642x360/, 'replay', none, '--film', file('my.mp4'), '--size', '641x360');
   fails(2, /--fps: 3 numbered images have no speed; leave out --fps or --frames/,

@@ -2,6 +2,7 @@
 #include "commands/film_writer.hpp"
 
 #include <doctest/doctest.h>
+#include <malloc.h>
 
 #include <array>
 #include <cstdlib>
@@ -20,6 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
+constexpr int kPatternWidth = 320, kPatternHeight = 180;
 constexpr int kTolerance = 2;  // of 255
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -40,6 +42,17 @@ scene::Image noise(unsigned seed) {
     for (std::uint8_t& byte : image.rgba) {
         seed = seed * 1664525 + 1013904223;
         byte = static_cast<std::uint8_t>(seed >> 24);
+    }
+    return image;
+}
+
+/// A pattern that moves.
+scene::Image pattern(unsigned step) {
+    scene::Image image;
+    image.resize(kPatternWidth, kPatternHeight);
+    for (unsigned i = 0; i < image.rgba.size(); ++i) {
+        const unsigned x = i / 4 % kPatternWidth, y = i / 4 / kPatternWidth;
+        image.rgba[i] = static_cast<std::uint8_t>(((x * 3 + y * 5 + step * 7) ^ (x * y / 50)) % 200);
     }
     return image;
 }
@@ -108,6 +121,18 @@ TEST_CASE("the same images give the same bytes, and one image is a film") {
     write_film(folder.path() / "a.mp4", 1);
     CHECK(decode_film(folder.path() / "a.mp4").images.size() == 1);
     CHECK(files_in(folder) == 2);
+}
+
+TEST_CASE("what memory held before does not change a film") {
+    const TemporaryFolder folder;
+    for (const int before : {0, 85}) {
+        mallopt(M_PERTURB, before);
+        FilmWriter film(folder.path() / (std::to_string(before) + ".mp4"), kPatternWidth, kPatternHeight, 30);
+        for (unsigned i = 0; i < 4; ++i) film.add(pattern(i));
+        film.finish();
+    }
+    mallopt(M_PERTURB, 0);
+    CHECK(folder.read("0.mp4") == folder.read("85.mp4"));
 }
 
 TEST_CASE("a colon in a film's name is a colon") {

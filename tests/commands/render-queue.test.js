@@ -136,6 +136,18 @@ describe('a queue of images', { skip: missing }, () => {
     assert.deepEqual(await streams(), { VRUT_JOBS: 0 });
   });
 
+  test('workers draw the film of one machine, to the byte, and leave nothing behind', async (t) => {
+    const options = ['render', CAR, '--keyframes', file('flight.json'), '--frames', '8', '--size', SIZE];
+    const { status, stderr } = spawnSync(PROGRAM, [...options, '-o', file('film-alone.mp4')], { encoding: 'utf8' });
+    if (/built without libavformat/.test(stderr)) return t.skip('the program is built without libavformat');
+    assert.equal(status, 0, stderr);
+    for (let i = 0; i < 3; ++i) worker();
+    const collector = start(PROGRAM, ...options, '-o', file('film.mp4'), '--nats', url());
+    assert.equal(await collector.ended, 0, collector.text);
+    assert.ok(fs.readFileSync(file('film.mp4')).equals(fs.readFileSync(file('film-alone.mp4'))));
+    assert.deepEqual(await streams(), { VRUT_JOBS: 0 });
+  });
+
   test('a worker draws a single image', async () => {
     worker();
     const options = ['render', CAR, '--eye', '3,2,5', '--size', SIZE];
@@ -263,7 +275,7 @@ describe('a queue of images', { skip: missing }, () => {
     const collector = queued('stopped.png');
     await eventually('jobs', async () => (await streams()).VRUT_JOBS === FRAMES);
     assert.equal(await stop(collector, 'SIGINT'), 1);
-    assert.match(collector.text, /^vrut-preview: a signal stopped the film: 0 of 8 images are written$/m);
+    assert.match(collector.text, /^vrut-preview: a signal stopped the film: 0 of 8 images are drawn$/m);
     assert.deepEqual(await streams(), { VRUT_JOBS: 0 });
   });
 
