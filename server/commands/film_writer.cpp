@@ -102,15 +102,18 @@ Owned<AVFrame> empty_frame(int width, int height) {
 }  // namespace
 
 void require_film_encoder(const fs::path& path) {
-    const std::string remedy = "; install libavformat and libavcodec with libx264, or name it " +
-                               path.stem().string() + ".png for numbered images";
+    const std::string otherwise = ", or name it " + path.stem().string() + ".png for numbered images";
     const auto has_encoder = [](const char* name) { return libav().avcodec_find_encoder_by_name(name); };
     try {
         if (std::ranges::any_of(kEncoders, has_encoder)) return;
     } catch (const std::exception& missing) {
-        throw std::runtime_error(path.string() + ": " + missing.what() + remedy);
+        throw std::runtime_error(path.string() + ": " + missing.what() + "; install libavformat" +
+                                 std::to_string(LIBAVFORMAT_VERSION_MAJOR) + " and libswscale" +
+                                 std::to_string(LIBSWSCALE_VERSION_MAJOR) + otherwise);
     }
-    throw std::runtime_error(path.string() + ": libavcodec has no encoder of H.264 or MPEG-4" + remedy);
+    throw std::runtime_error(path.string() +
+                             ": libavcodec has no encoder of H.264 or MPEG-4; install one with libx264" +
+                             otherwise);
 }
 
 class FilmWriter::File {
