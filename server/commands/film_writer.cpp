@@ -182,10 +182,8 @@ private:
             const int received = libav().avcodec_receive_packet(codec_.get(), packet_.get());
             if (received == AVERROR(EAGAIN) || received == AVERROR_EOF) return;
             check(received);
-            packet_->duration = 1;
             libav().av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
             check(libav().av_interleaved_write_frame(format_.get(), packet_.get()));
-            check(format_->pb->error);
         }
     }
 

@@ -59,6 +59,7 @@ DecodedFilm decode_film(const std::filesystem::path& file) {
                          codec->color_trc == AVCOL_TRC_BT709,
                      codec->color_range == AVCOL_RANGE_MPEG,
                      av_q2d(stream.avg_frame_rate),
+                     static_cast<double>(format->duration) / AV_TIME_BASE,
                      {}};
     AVPacket* packet = av_packet_alloc();
     AVFrame* frame = av_frame_alloc();

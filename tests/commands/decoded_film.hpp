@@ -12,7 +12,7 @@ namespace vrut::test {
 struct DecodedFilm {
     std::string codec;
     bool is_bt709 = false, has_limited_range = false;
-    double images_per_second = 0;
+    double images_per_second = 0, seconds = 0;
     std::vector<scene::Image> images;  ///< rows from the bottom up
 };
 

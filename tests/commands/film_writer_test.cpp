@@ -102,6 +102,7 @@ TEST_CASE("a film shows the colours of its images, the right way up") {
     CHECK(film.is_bt709);
     CHECK(film.has_limited_range);
     CHECK(film.images_per_second == 24);
+    CHECK(film.seconds == doctest::Approx(4 / 24.0).epsilon(0.001));
     REQUIRE(film.images.size() == patches.size());
     for (std::size_t i = 0; i < patches.size(); ++i) {
         CAPTURE(i);
@@ -119,7 +120,9 @@ TEST_CASE("the same images give the same bytes, and one image is a film") {
     CHECK(folder.read("a.mp4") == folder.read("b.mp4"));
     CHECK(decode_film(folder.path() / "a.mp4").images.size() == 40);
     write_film(folder.path() / "a.mp4", 1);
-    CHECK(decode_film(folder.path() / "a.mp4").images.size() == 1);
+    const DecodedFilm one = decode_film(folder.path() / "a.mp4");
+    CHECK(one.images.size() == 1);
+    CHECK(one.seconds == doctest::Approx(1 / 25.0).epsilon(0.001));
     CHECK(files_in(folder) == 2);
 }
 
@@ -137,8 +140,11 @@ TEST_CASE("what memory held before does not change a film") {
 
 TEST_CASE("a colon in a film's name is a colon") {
     const TemporaryFolder folder;
-    write_film(folder.path() / "http:a.mp4", 2);
-    CHECK(decode_film("file:" + (folder.path() / "http:a.mp4").string()).images.size() == 2);
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    CHECK(error_of([] { write_film("http:a.mp4", 2); }) == "nothing");
+    fs::current_path(before);
+    CHECK(decode_film(folder.path() / "http:a.mp4").images.size() == 2);
 }
 
 TEST_CASE("a film that is not finished leaves nothing, and the old one as it was") {
@@ -165,7 +171,7 @@ TEST_CASE("what cannot be written is a sentence, and nothing is left") {
     const fs::path nowhere = folder.path() / "none/a.mp4";
     CHECK(error_of([&] { write_film(nowhere, 1); }) ==
           nowhere.string() + " cannot be written: No such file or directory");
-    CHECK(error_of([&] { write_film(folder.path(), 1); }) ==
+    CHECK(error_of([&] { FilmWriter(folder.path(), kWidth, kHeight, 25); }) ==
           folder.path().string() + " cannot be written: Is a directory");
     CHECK(files_in(folder) == 1);
 }

@@ -136,6 +136,13 @@ TEST_CASE("a film of a session ends at what the session ended at") {
     CHECK(studio.folder.read("film.mp4") == studio.folder.read("again.mp4"));
 }
 
+TEST_CASE("what flies in a session flies in its film between the frames that were drawn") {
+    const Studio studio;
+    CHECK(run(studio.replay("begun-in-flight", "film.mp4") + std::vector<std::string>{"--fps", "100"}) == 0);
+    constexpr std::size_t kDrawn = 38;
+    CHECK(changes_in(decode_film(studio.path("film.mp4")).images) > kDrawn);
+}
+
 TEST_CASE("a film of a session goes on through another scene, in the size of the first view") {
     const Studio studio;
     CHECK(run(studio.replay("other-scene", "film.mp4") + std::vector<std::string>{"--fps", "60"}) == 0);
