@@ -40,6 +40,7 @@ public:
     /// Throws std::runtime_error where a library is not there: a phrase that names it.
     Libav() = default;
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a member cannot be declared in them
 #define VRUT_FUNCTION(library, name) decltype(&::name) name = find<decltype(&::name)>(library, #name)
     VRUT_FUNCTION(format_, av_frame_alloc);
     VRUT_FUNCTION(format_, av_frame_free);

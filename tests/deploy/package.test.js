@@ -54,9 +54,10 @@ test('the server\'s package has all that is installed, and the client\'s none of
   }
 });
 
-test('it depends on what it is linked with, and on a driver', { skip }, () => {
+test('it depends on what it is linked with, and on a driver, and recommends what films need', { skip }, () => {
   const names = field(SERVER, 'Depends').split(', ').map((word) => word.split(' ')[0]);
   for (const name of ['libc6', 'libstdc++6', 'libegl1', 'libassimp5', 'libgl1-mesa-dri']) assert.ok(names.includes(name), `${names}`);
+  assert.equal(field(SERVER, 'Recommends'), 'libavformat59, libswscale6');
 });
 
 test('lintian finds no error', { skip: skip || missing('lintian') }, () => {
