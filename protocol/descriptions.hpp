@@ -605,6 +605,20 @@ void describe(V& v, const CameraState*) {
 }
 
 template <class V>
+void describe(V& v, const WallsState*) {
+    v.fixed("eye", &WallsState::eye, kPosition, "Where that camera stands.");
+    v.fixed("focus", &WallsState::focus, kPosition, "What it looks at.");
+    v.fixed("up", &WallsState::up, kPosition, "Which way is up; unit, at right angles to the view.");
+    v.fixed("center", &WallsState::center, kPosition, "The centre of rotation.");
+    v.fixed("fov", &WallsState::fov, kFov, "The vertical angle of view in degrees.");
+    v.fixed("near", &WallsState::near, kDuration, "Near end of its clip range.");
+    v.fixed("far", &WallsState::far, kDuration, "Far end of its clip range.");
+    v.fixed("behindDegrees", &WallsState::behind_degrees, Number{0, 180}, "How far its view has to turn.");
+    v.fixed("behindMetres", &WallsState::behind_metres, kDuration,
+            "How far its eye has to move, by the scene's unit.");
+}
+
+template <class V>
 void describe(V& v, const Named*) {
     v.fixed("name", &Named::name, kName, "As in the file.");
 }
@@ -825,6 +839,19 @@ void describe(V& v, const PointingState*) {
 }
 
 template <class V>
+void describe(V& v, const ComfortState*) {
+    v.writable("on", &ComfortState::on, Flag{}, "The camera of hosts keeps to these limits.");
+    v.writable("degreesPerSecond", &ComfortState::degrees_per_second, Number{10, 720},
+               "How fast the view turns at most.");
+    v.writable("degreesPerSecondSquared", &ComfortState::degrees_per_second_squared, Number{10, 10'000},
+               "How fast that speed changes at most.");
+    v.writable("metresPerSecond", &ComfortState::metres_per_second, Number{0.1, 100},
+               "How fast the eye moves at most, by the scene's unit.");
+    v.writable("metresPerSecondSquared", &ComfortState::metres_per_second_squared, Number{0.1, 1000},
+               "How fast that speed changes at most.");
+}
+
+template <class V>
 void describe(V& v, const ControlState::Asking*) {
     v.fixed("client", &ControlState::Asking::client, kName, "The client's id.");
     v.fixed("name", &ControlState::Asking::name, kName, "As in its `hello`.");
@@ -856,6 +883,8 @@ template <class V>
 void describe(V& v, const State*) {
     v.fixed("scene", &State::scene, SharedKind<Object<SceneState>>{}, "The scene as in the file.");
     v.writable("camera", &State::camera, kCamera, "The one camera of all.");
+    v.fixed("walls", &State::walls, Object<WallsState>{},
+            "The camera that hosts have, while it is behind that of all.");
     v.fixed("cameras", &State::cameras, SharedKind<Table<Named>>{}, "Camera nodes, by id.");
     v.writable("navigation", &State::navigation, Section<NavigationState>{}, "What input does.");
     v.writable("renderer", &State::renderer, Section<RendererState>{}, "How the scene is drawn.");
@@ -887,6 +916,7 @@ void describe(V& v, const State*) {
     v.writable("quality", &State::quality, Section<QualityState>{},
                "How frames are drawn while things move.");
     v.writable("pointing", &State::pointing, Section<PointingState>{}, "Who may point.");
+    v.writable("comfort", &State::comfort, Section<ComfortState>{}, "How fast the camera of hosts moves.");
     v.fixed("control", &State::control, Object<ControlState>{}, "Who holds control, and who asks.");
     v.fixed("clients", &State::clients, SharedTable<Table<ClientState>>{},
             "Who is connected, by the client's id.");

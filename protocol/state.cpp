@@ -391,6 +391,23 @@ tl::expected<std::shared_ptr<const StateDocument>, std::string> StateDocument::r
     return or_error(read).map_error([](const Error& error) { return error.message; });
 }
 
+std::shared_ptr<const StateDocument> StateDocument::for_hosts() const {
+    const auto place = [&](const char* name) {
+        return std::ranges::find(sections_, name, [](const auto& section) { return section->name; });
+    };
+    const auto walls = place("walls"), camera = place("camera");
+    if (walls == sections_.end() || camera == sections_.end() || (*walls)->json.is_null()) return nullptr;
+    Json json = (*walls)->json;
+    json.erase("behindDegrees");
+    json.erase("behindMetres");
+    auto document = std::make_shared<StateDocument>();
+    document->revision_ = revision_;
+    document->sections_ = sections_;
+    document->sections_[static_cast<std::size_t>(camera - sections_.begin())] =
+        std::make_shared<Section>(Section{"camera", std::move(json), revision_});
+    return document;
+}
+
 bool StateDocument::has_scene_of(const StateDocument& other) const {
     const auto scene = [](const StateDocument& document) {
         return *std::ranges::find(document.sections_, "scene",

@@ -72,6 +72,15 @@ struct CameraState {
     bool operator==(const CameraState&) const = default;
 };
 
+/// The camera that hosts have while it is behind the room's.
+struct WallsState {  // r
+    glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
+    double fov = 40;
+    double near = 0.1, far = 100;
+    double behind_degrees = 0, behind_metres = 0;  ///< how far the view must turn, and the eye move
+    bool operator==(const WallsState&) const = default;
+};
+
 /// Of a camera node or a material.
 struct Named {  // r
     std::string name;
@@ -251,6 +260,14 @@ struct PointingState {
     bool operator==(const PointingState&) const = default;
 };
 
+/// How fast the camera of hosts moves.
+struct ComfortState {
+    bool on = true;  ///< false: they have the room's camera at once
+    double degrees_per_second = 45, degrees_per_second_squared = 180;  ///< of the view
+    double metres_per_second = 2, metres_per_second_squared = 8;       ///< of the eye
+    bool operator==(const ComfortState&) const = default;
+};
+
 struct ControlState {  // r
     /// A control client that asks the holder for control.
     struct Asking {
@@ -288,6 +305,7 @@ struct SwingState {  // r
 struct State {
     Shared<SceneState> scene;
     CameraState camera;
+    std::optional<WallsState> walls;  // r: none: hosts have the room's camera
     Shared<Names> cameras;
     NavigationState navigation;
     RendererState renderer;
@@ -308,6 +326,7 @@ struct State {
     std::optional<ShownCueState> cue;  // r
     QualityState quality;
     PointingState pointing;
+    ComfortState comfort;
     ControlState control;
     SharedMap<ClientState> clients;  // r: the first kMaxListedClients
     std::optional<RecordingState> recording;
@@ -353,6 +372,7 @@ bool names_only(const nlohmann::json& patch, std::initializer_list<std::string_v
 /// Which members of `camera` a patch names; null names all.
 struct NamedCameraMembers {
     bool node = false, eye = false, focus = false, up = false, center = false, fov = false;
+    bool any() const { return node || eye || focus || up || center || fov; }
 };
 NamedCameraMembers named_camera_members(const nlohmann::json& patch);
 
@@ -376,6 +396,10 @@ public:
     /// shows() is false for any state, and last_change() is its own revision.
     static tl::expected<std::shared_ptr<const StateDocument>, std::string> received(
         std::string_view text, const StateDocument* known);
+
+    /// What hosts get: the same revision, with the camera of `walls` as `camera`, which stands at no node
+    /// then. Null where they get this one. Its shows() is false for any state.
+    std::shared_ptr<const StateDocument> for_hosts() const;
 
     std::int64_t revision() const { return revision_; }
     bool shows(const State& state) const { return state_ == state; }

@@ -2,45 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
+
+#include "navigation/orientation.hpp"
 
 namespace vrut::navigation {
 
 namespace {
 
-struct ViewBasis {
-    glm::dvec3 view, up;
-};
-
-/// The horizon is level, and the scene does not stand on its head. Straight up and down count, too.
-bool is_level(const scene::Camera& camera) {
-    return std::abs(scene::right_direction(camera).y) < 1e-9 && camera.up.y > -1e-9;
-}
-
-/// Radians: of the right vector around the vertical, which tells more than the view where that is vertical.
-double azimuth(const scene::Camera& camera) {
-    const glm::dvec3 right = scene::right_direction(camera);
-    return std::atan2(-right.z, right.x);
-}
-
-/// Radians of the eye above the focus, -π/2 to π/2.
-double elevation(const scene::Camera& camera) {
-    return std::atan2(-scene::view_direction(camera).y, camera.up.y);
-}
-
-ViewBasis between_level(const scene::Camera& a, const scene::Camera& b, double part) {
-    const double from = azimuth(a), turn = std::remainder(azimuth(b) - from, 2 * std::numbers::pi);
+ViewBasis between_level(const LevelAngles& a, const LevelAngles& b, double part) {
+    const double turn = std::remainder(b.around - a.around, 2 * std::numbers::pi);
     constexpr double kUpright = std::numbers::pi / 2;
-    const double around = from + turn * part,
-                 above = std::clamp(std::lerp(elevation(a), elevation(b), part), -kUpright, kUpright);
-    const glm::dvec3 ahead(-std::sin(around), 0, -std::cos(around));
-    const double c = std::cos(above), s = std::sin(above);
-    return {ahead * c - scene::kVertical * s, ahead * s + scene::kVertical * c};
-}
-
-glm::dquat orientation(const scene::Camera& camera) {
-    const glm::dvec3 back = -scene::view_direction(camera), right = scene::right_direction(camera);
-    return glm::normalize(glm::quat_cast(glm::dmat3(right, glm::cross(back, right), back)));
+    return view_basis(
+        {a.around + turn * part, std::clamp(std::lerp(a.above, b.above, part), -kUpright, kUpright)});
 }
 
 ViewBasis between_any(const scene::Camera& a, const scene::Camera& b, double part) {
@@ -53,7 +26,8 @@ ViewBasis between_any(const scene::Camera& a, const scene::Camera& b, double par
 scene::Camera on_the_way(const scene::Camera& a, const scene::Camera& b, double part) {
     if (part <= 0 || a == b) return a;
     if (part == 1) return b;
-    const ViewBasis basis = is_level(a) && is_level(b) ? between_level(a, b, part) : between_any(a, b, part);
+    const auto from = level_angles(a), to = level_angles(b);
+    const ViewBasis basis = from && to ? between_level(*from, *to, part) : between_any(a, b, part);
     const double distance =
         scene::focus_distance(a) * std::pow(scene::focus_distance(b) / scene::focus_distance(a), part);
     scene::Camera result;

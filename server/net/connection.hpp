@@ -83,6 +83,8 @@ private:
     bool sends_depth_of(const engine::EncodedPicture& picture) const;
     std::size_t bytes_of(const engine::EncodedPicture& picture) const;
     void send_update(base::Clock::time_point now);
+    /// Of its role.
+    DocumentUpdates& documents() const;
     void send_document();
     void send_point(base::Clock::time_point now);
     void send_answer();

@@ -133,11 +133,15 @@ void Connection::pump() {
     ask_again(now);
 }
 
+DocumentUpdates& Connection::documents() const {
+    return role_ == protocol::Role::host ? room_->host_document : room_->document;
+}
+
 /// A client that has not joined the room gets no document: its first one tells who has control.
 bool Connection::has_updates() const {
     const bool has_joined = handled_sequence_ >= engine::kHelloSequence;
-    return has_joined && room_->document.newest() &&
-           (document_ != room_->document.newest() || has_broadcasts() || !points_.empty());
+    return has_joined && documents().newest() &&
+           (document_ != documents().newest() || has_broadcasts() || !points_.empty());
 }
 
 bool Connection::has_broadcasts() const { return loading_ != room_->loading || stats_ != room_->stats; }
@@ -146,10 +150,10 @@ bool Connection::has_broadcasts() const { return loading_ != room_->loading || s
 /// statistics. The document takes turns with points, and goes before the others, unless these have waited for
 /// long.
 void Connection::send_update(base::Clock::time_point now) {
-    const bool knows_newest = document_ == room_->document.newest();
+    const bool knows_newest = document_ == documents().newest();
     if (document_ && !points_.empty() && (knows_newest || points_turn_)) return send_point(now);
     const bool waits = has_broadcasts() && now - had_broadcasts_ >= kLongestBroadcast;
-    if (document_ != room_->document.newest() && !waits) return send_document();
+    if (document_ != documents().newest() && !waits) return send_document();
     had_broadcasts_ = now;
     for (const auto& [newest, sent] :
          {std::pair(&room_->loading, &loading_), std::pair(&room_->stats, &stats_)})
@@ -177,8 +181,8 @@ void Connection::send_answer() {
 }
 
 void Connection::send_document() {
-    Text update = room_->document.update_from(document_.get(), *registry_.metrics);
-    document_ = room_->document.newest();
+    Text update = documents().update_from(document_.get(), *registry_.metrics);
+    document_ = documents().newest();
     points_turn_ = true;
     flow_.sent_update(update->size(), base::Clock::now());
     send_text(std::move(update));

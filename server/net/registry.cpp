@@ -51,6 +51,8 @@ void ServedRoom::take(engine::EngineOutput output) {
         present_frame = 0;
     }
     if (output.document) {
+        const auto for_hosts = output.document->for_hosts();
+        host_document.set(for_hosts ? for_hosts : output.document, output.by, output.by_since);
         document.set(std::move(output.document), std::move(output.by), output.by_since);
         pictures.forget_before(document.newest()->revision());
     }

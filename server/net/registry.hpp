@@ -33,7 +33,7 @@ struct ServedRoom {
     std::shared_ptr<engine::RoomEngine> engine;
     Admit admit;
     std::string suffix = {};  ///< of its clients' names and its pictures', which no other server's have
-    DocumentUpdates document;
+    DocumentUpdates document, host_document;  ///< hosts have a camera of their own
     std::shared_ptr<const engine::EncodedPicture> newest;
     std::int64_t present_frame = 0;  ///< the frame that shows what is to be seen now; 0: none
     std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all

@@ -41,6 +41,7 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     changing_.clear();  // who holds control is the server's doing
     add_client(client, {role, {}, own_name(name, resume_key), resume_key});
     list_clients();
+    use_walls();
     write_recording(client, protocol::LogLine::Connected{role, clients_[client].name});
     write_journal(client, protocol::LogLine::Connected{role, clients_[client].name, resume_key});
     if (role != Role::control) return;
@@ -117,6 +118,7 @@ void Room::leave(const std::string& client, SessionTime at) {
     show_holder();
     record_holder();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
+    use_walls();
 }
 
 void Room::pass_control(const std::string& client, SessionTime at) {
@@ -127,6 +129,7 @@ void Room::pass_control(const std::string& client, SessionTime at) {
     else if (clients_.contains(client))
         steering_.take(client);
     show_holder();
+    use_walls();
 }
 
 bool Room::handle_message(const std::string& client, const protocol::ClientMessage& message, SessionTime at) {
@@ -164,6 +167,7 @@ bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     apply();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
     update_visible();
+    use_walls();
     if (accepted_ && received.traits.recorded) {
         write_journal(received.client, received.message);
         if (recorded) write_recording(received.client, received.message);
@@ -204,6 +208,15 @@ void Room::scenes_listed(std::int64_t request, std::vector<std::string> names) {
 }
 
 void Room::advance(SessionTime at) {
+    while (walls_ && walls_->due && *walls_->due <= at) {
+        advance_to(*walls_->due);
+        step_walls();
+    }
+    advance_to(at);
+    use_walls();
+}
+
+void Room::advance_to(SessionTime at) {
     time_ = std::max(time_, at);
     if (const auto due = steering_.deadline(); due && !options_.replaying && *due <= time_) {
         document();
@@ -253,6 +266,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     next.renderer.show_selection = state_.renderer.show_selection;
     next.quality = state_.quality;
     next.pointing = state_.pointing;
+    next.comfort = state_.comfort;
     next.control = state_.control;
     next.clients = state_.clients;
     next.recording = state_.recording;
@@ -262,6 +276,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     lay_changes();
     gestures_.restart(camera());
     update_visible();
+    jump_walls();
 }
 
 void Room::lay_changes() {
@@ -292,6 +307,7 @@ void Room::remember(std::int64_t frame) {
 }
 
 const std::shared_ptr<const protocol::StateDocument>& Room::document() {
+    state_.walls = walls_state();
     if (!document_->shows(state_)) {
         document_ = protocol::StateDocument::next(*document_, state_);
         if (changed_by_ != changing_ || changed_by_since_ == 0) changed_by_since_ = document_->revision();

@@ -16,6 +16,7 @@
 #include "mesh/watertight_memo.hpp"
 #include "message_table.hpp"
 #include "navigation/clicks.hpp"
+#include "navigation/comfort_limiter.hpp"
 #include "navigation/flight.hpp"
 #include "navigation/gestures.hpp"
 #include "plan/view.hpp"
@@ -264,6 +265,8 @@ private:
     /// Returns true if this message may steer; else it is rejected.
     bool may_steer(const Received& received);
     void reject_not_in_control(const Received& received);
+    /// advance() without steps of the walls between.
+    void advance_to(SessionTime at);
     /// The message steers. In a replay its client holds control: in logs of before, who steered took it.
     void steer(const Received& received);
     /// Brings the state in line with who holds control now.
@@ -318,6 +321,20 @@ private:
     /// Who may point has changed.
     void use_pointing();
     std::optional<SessionTime> pointing_deadline() const;
+
+    // --- the camera of hosts, which follows the room's at the speeds of `comfort`
+    struct Walls {
+        navigation::ComfortLimiter limiter;
+        std::optional<SessionTime> due = {};  ///< of the next step; none: it rests where nothing moves
+    };
+    /// Begins or ends what follows, in line with who is here, and with what moves.
+    void use_walls();
+    /// Its next step, at time_.
+    void step_walls();
+    /// Hosts have the present camera at once.
+    void jump_walls();
+    /// For the state; none: hosts have the present camera.
+    std::optional<protocol::WallsState> walls_state() const;
 
     // --- measures
     /// What a pick with `snap` finds; none where nothing is near.
@@ -413,8 +430,9 @@ private:
     std::optional<InFlight> flight_;
     std::vector<InSwing> swings_;
     std::optional<Tap> tap_;
-    SessionTime time_{0};    ///< of what happens now
-    bool accepted_ = false;  ///< the message in hand
+    std::optional<Walls> walls_;  ///< none: hosts have the room's camera
+    SessionTime time_{0};         ///< of what happens now
+    bool accepted_ = false;       ///< the message in hand
     /// Who holds control by the lines of a log up to here, and whether that client is absent.
     std::pair<std::optional<std::string>, bool> recorded_holder_;
     /// In a replay: for the press that took control to end. It is measured in the view that it began in.

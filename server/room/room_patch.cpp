@@ -23,7 +23,8 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (!next) return reject(received, next.error().code.c_str(), next.error().message);
     std::shared_ptr<const scene::PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
-    if (!error) error = use_camera(*next, *placed, protocol::named_camera_members(*patch.patch));
+    const protocol::NamedCameraMembers named = protocol::named_camera_members(*patch.patch);
+    if (!error) error = use_camera(*next, *placed, named);
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
     if (!error) error = check_measures(*next);
@@ -45,6 +46,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     gestures_.restart(camera());
     measure();
+    if (clients_[received.client].role == Role::host && named.any()) jump_walls();
     if (pointing_changes) use_pointing();
     answer(received);
 }

@@ -183,7 +183,7 @@ RecordingSink::Header Room::log_header() const {
 std::optional<Room::Checkpoint> Room::checkpoint() {
     const bool is_quiet = swings_.empty() && !tap_ && !gestures_.any_pressed() &&
                           gestures_.held_keys().empty() && requests_.empty() && recordings_.empty() &&
-                          !steering_.deadline();
+                          !steering_.deadline() && !(walls_ && walls_->due);
     if (!is_quiet) return std::nullopt;
     Checkpoint now{header_of_now(), {document()->revision(), state_.notices, ""}};
     now.header.state = protocol::document_of(state_);
@@ -209,6 +209,7 @@ void Room::follow(const protocol::LogLine::Revised& revised, SessionTime at) {
         state_.recording.reset();
         if (!revised.recording->empty()) state_.recording = protocol::RecordingState{*revised.recording};
     }
+    state_.walls = walls_state();
     if (revised.revision > document_->revision())
         document_ = protocol::StateDocument::next(*document_, state_, revised.revision);
 }

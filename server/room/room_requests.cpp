@@ -169,6 +169,7 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     }
     gestures_.restart(camera());
     update_visible();
+    use_walls();
     if (header.revision > 0) document_ = protocol::StateDocument::next({}, state_, header.revision);
     return {};
 }

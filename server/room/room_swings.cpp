@@ -116,6 +116,7 @@ std::optional<SessionTime> Room::deadline() const {
     };
     if (tap_) add(tap_->due);
     add(pointing_deadline());
+    if (walls_) add(walls_->due);
     return first;
 }
 

@@ -102,6 +102,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     state.clients.set({{"c1", {"Bea", Role::control}}, {"c2", {{}, Role::host}}});
     state.recording = RecordingState{"drive"};
     state.swings.set("5", {0.5});
+    state.walls = WallsState{};
     state.notices = {{"recording-ended", "The recording 'drive' has ended: No space left on device"}};
     auto background = state.backgrounds.items->at("11");
     background.texture = "sky.png";

@@ -251,6 +251,11 @@ const std::vector<Member> kMembersOfSections = {
     {"/quality/preference", {"0", "1"}, kNoNumber, {"-0.01", "1.01"}},
     {"/quality/latencyTargetMs", {"1", "10000"}, kNoNumber, {"0.9", "10001"}},
     {"/pointing/watchers", {"true", "false"}, kNoFlag, {}},
+    {"/comfort/on", {"true", "false"}, kNoFlag, {}},
+    {"/comfort/degreesPerSecond", {"10", "720"}, kNoNumber, {"0", "-45", "721"}},
+    {"/comfort/degreesPerSecondSquared", {"10", "10000"}, kNoNumber, {"0", "-1", "10001"}},
+    {"/comfort/metresPerSecond", {"0.1", "100"}, kNoNumber, {"0", "-1", "101"}},
+    {"/comfort/metresPerSecondSquared", {"0.1", "1000"}, kNoNumber, {"0", "-1", "1001"}},
 };
 
 /// A cue's own, and those that are the same as in the state.
@@ -283,6 +288,7 @@ const std::vector<Member> kMembers = [] {
 }();
 
 const std::vector<const char*> kReadOnly = {"/scene",
+                                            "/walls",
                                             "/cameras",
                                             "/materials",
                                             "/control",
@@ -695,7 +701,7 @@ public:
             result = *taken;
         }
         // What the server itself changes.
-        switch (below(10)) {
+        switch (below(12)) {
             case 0:
                 result.recording = RecordingState{"log" + std::to_string(below(3))};
                 break;
@@ -723,6 +729,13 @@ public:
             case 8:
                 result.cue.reset();
                 if (!result.cues->empty()) result.cue = ShownCueState{result.cues->begin()->first};
+                break;
+            case 9:
+                result.walls = WallsState{};
+                result.walls->behind_degrees = static_cast<double>(below(3));
+                break;
+            case 10:
+                result.walls.reset();
                 break;
             default:
                 break;
@@ -827,6 +840,7 @@ TEST_CASE("a state comes back from its document") {
             starting.selection.path_ids = state.selection.path_ids;
             starting.recording = state.recording;
             starting.measured = state.measured;
+            starting.walls = state.walls;
             const json document = json::parse(StateDocument::next({}, state)->json().dump());
             const auto back = restored(starting, document);
             REQUIRE_MESSAGE(back.has_value(), back.error().message);

@@ -1,6 +1,6 @@
 // Records the sessions of tests/data/logs anew, by the real program over its WebSocket, with the scenes of
 // tests/data/scenes: NAME.jsonl is the log, NAME.camera.json the camera as the script saw it at the end, and
-// NAME.measured.json what was measured then, if anything.
+// NAME.measured.json what was measured then, if anything; NAME.walls.json cameras that a host had on the way.
 //
 //   VRUT_PREVIEW=build/release/vrut-preview node tests/replay/record-sessions.mjs [NAME…]
 //
@@ -365,6 +365,30 @@ const SESSIONS = {
     return user;
   },
 
+  comfort: async (session, name) => {
+    const user = await Participant.join(session, 'control', VIEW);
+    const host = await Participant.join(session, 'host');
+    user.watch();
+    await user.record(name);
+    await user.ask({ type: 'patch', patch: { unit: { metres: 1 }, comfort: { degreesPerSecond: 60 } } });
+    const { camera } = user.state;
+    const rest = () => host.client.until('rest', () => !host.state.walls && host.client.revision === user.client.revision);
+    await user.drag([350, 130], [60, 120], 12); // a flick
+    await sleep(400);
+    await user.drag([60, 120], [350, 160], 12); // and back, while they follow
+    await user.ask({ type: 'fly', keyframes: [{ at: 600, camera: { eye: [2.5, 1.9, 4], focus: [0.2, 1, 0] } }] });
+    user.wheel(-240);
+    await rest();
+    await user.ask({ type: 'patch', patch: { comfort: { on: false } } });
+    await user.ask({ type: 'patch', patch: { camera: { eye: [0, 1.6, 4], focus: [0, 1, 0] }, comfort: { on: true } } });
+    await user.drag([200, 125], [330, 110], 8);
+    await rest();
+    await user.ask({ type: 'patch', patch: { camera: { eye: camera.eye, focus: camera.focus } } });
+    await rest();
+    user.walls = wallsSeen(host);
+    return user;
+  },
+
   doors: async (session, name) => {
     const user = await Participant.join(session, 'control', VIEW);
     user.watch();
@@ -466,6 +490,18 @@ const SESSIONS = {
   },
 };
 
+/** Some of the cameras that a host had while it was behind, as lists of numbers. */
+function wallsSeen({ client }) {
+  const seen = [];
+  let walls = {};
+  for (const { type, patch } of client.texts) {
+    if (type !== 'patch' || patch.walls === undefined) continue;
+    walls = patch.walls && { ...walls, ...patch.walls };
+    if (walls) seen.push([...walls.eye, ...walls.focus, ...walls.up]);
+  }
+  return seen.filter((_, i) => i % 20 === 10);
+}
+
 async function record(name, play) {
   const folder = mkdtempSync(path.join(tmpdir(), 'vrut-record-'));
   const session = { participants: [] };
@@ -484,6 +520,7 @@ async function record(name, play) {
     mkdirSync(LOGS, { recursive: true });
     copyFileSync(log, path.join(LOGS, `${name}.jsonl`));
     writeFileSync(path.join(LOGS, `${name}.camera.json`), `${JSON.stringify(camera)}\n`);
+    if (user.walls) writeFileSync(path.join(LOGS, `${name}.walls.json`), `${JSON.stringify(user.walls)}\n`);
     if (Object.keys(measured).length > 0)
       writeFileSync(path.join(LOGS, `${name}.measured.json`), `${JSON.stringify(measured)}\n`);
     console.log(`${name}: ${size} bytes`);

@@ -157,7 +157,65 @@ protocol::CameraState played_restlessly(const EventLog& log, std::mt19937& dice)
     return room.state().camera;
 }
 
+using WallsPose = std::array<double, 9>;
+
+/// The cameras that hosts had while they were behind, in a room that is advanced by `step` each time.
+std::vector<WallsPose> walls_of(const EventLog& log, SessionTime step) {
+    RoomOptions options;
+    options.replaying = true;
+    Room room(*find_scene(log.header.scene, log.header.scene_sha256), options);
+    REQUIRE(room.restore(log.header));
+    std::vector<WallsPose> poses;
+    const auto look = [&] {
+        room.document();
+        const auto& walls = room.state().walls;
+        if (!walls) return;
+        const auto& [eye, focus, up] = std::tie(walls->eye, walls->focus, walls->up);
+        const WallsPose pose{eye.x, eye.y, eye.z, focus.x, focus.y, focus.z, up.x, up.y, up.z};
+        if (poses.empty() || poses.back() != pose) poses.push_back(pose);
+    };
+    SessionTime now{0};
+    const auto go_to = [&](SessionTime end) {
+        for (now += step; now < end; now += step) {
+            room.advance(now);
+            look();
+        }
+        now = std::max(end, room.time());
+    };
+    for (const LogLine& line : log.lines) {
+        go_to(line.at);
+        std::visit(Play{room, line}, line.what);
+        look();
+    }
+    go_to(now + SessionTime(10'000'000));
+    return poses;
+}
+
+/// How far two lie apart in any number.
+double apart(const WallsPose& a, const WallsPose& b) {
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+    return most;
+}
+
 }  // namespace
+
+TEST_CASE("hosts come by the cameras that they had, to the last bit however often the time is looked at") {
+    std::ifstream file(session_file(".walls.json"));
+    if (!file) return;  // a session without hosts
+    const std::vector<WallsPose> seen = json::parse(file), all = walls_of(read_session(), SessionTime(1000));
+    CHECK(walls_of(read_session(), SessionTime(4000)) == all);
+    const std::vector<WallsPose> some = walls_of(read_session(), SessionTime(70'000));
+    CHECK(
+        std::ranges::all_of(some, [&](const WallsPose& pose) { return std::ranges::count(all, pose) > 0; }));
+    CHECK(some.size() < all.size() / 2);
+    CHECK(seen.size() > 10);
+    auto from = all.begin();
+    for (const WallsPose& pose : seen) {
+        from = std::find_if(from, all.end(), [&](const WallsPose& each) { return apart(each, pose) < 1e-9; });
+        REQUIRE(from != all.end());
+    }
+}
 
 TEST_CASE("a session ends at the camera that its clients saw, each time to the last bit") {
     const EventLog log = read_session();

@@ -126,7 +126,8 @@ TEST_CASE("a room that follows another has its state, its revision and its camer
             if (here.empty() || (dice() % 20 == 0 && here.size() < 4)) {
                 here.push_back("c" + std::to_string(step));
                 const std::string key = dice() % 2 ? "key " + std::to_string(dice() % 3) : "";
-                pair.leader.room.join(here.back(), protocol::Role::control, pair.leader.now, {}, key);
+                const auto role = dice() % 4 ? protocol::Role::control : protocol::Role::host;
+                pair.leader.room.join(here.back(), role, pair.leader.now, {}, key);
             } else if (dice() % 25 == 0) {
                 const auto leaving = here.begin() + static_cast<std::ptrdiff_t>(dice() % here.size());
                 pair.leader.room.leave(*leaving, pair.leader.now);
@@ -196,6 +197,12 @@ TEST_CASE("there is no checkpoint while something goes on that it would not hold
     pair.leader.say("a", R"({"type":"swing","id":1,"node":1})");
     CHECK_FALSE(pair.leader.room.checkpoint());
     pair.leader.at(2s);
+    CHECK(pair.leader.room.checkpoint());
+    pair.leader.room.join("h", protocol::Role::host, 2s);
+    CHECK(pair.leader.room.checkpoint());
+    pair.leader.say("a", R"({"type":"navigate","id":2,"rotate":[300,0]})");
+    CHECK_FALSE(pair.leader.room.checkpoint());  // the walls follow
+    pair.leader.at(9s);
     CHECK(pair.leader.room.checkpoint());
     pair.leader.say("a", pointer("down", 1, 1, 1));
     CHECK_FALSE(pair.leader.room.checkpoint());

@@ -35,6 +35,14 @@ export const ROWS = [
     beyond: 'a move whose result is not finite is not made',
   },
   {
+    what: 'the camera of walls',
+    studies: ['walls-lag', 'walls-catch-up'],
+    tests: [['tests/navigation/comfort_limiter_test.cpp', 'it jumps where the way is longer than ten seconds at full speed, and where steps are too fine']],
+    holds: (lag, flicks) =>
+      `after flicks of half a second up to ${short(flicks.to)} degrees a second, walls that turn by at most 45 are where the camera is within ${seconds(1000 * flicks.worst)}`,
+    beyond: 'where the eye is farther than walls go in 10 s, they jump',
+  },
+  {
     what: 'flat mirrors',
     studies: ['mirrors', 'bent-mirrors'],
     holds: (mirrors) => `${short(mirrors.to)} in a picture, each flat to 10⁻⁴ of its radius: ${off(mirrors)}`,

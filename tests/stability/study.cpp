@@ -115,6 +115,8 @@ const std::vector<Topic>& topics() {
         {"over the pole", over_the_pole},
         {"through the focus", through_the_focus},
         {"the largest numbers", largest_numbers},
+        {"lag of walls", lag_of_walls},
+        {"walls that catch up", walls_that_catch_up},
         {"lost moves", moves_lost},
         {"lost releases", releases_lost},
         {"messages that come twice", repeated_ids},

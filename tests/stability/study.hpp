@@ -125,6 +125,9 @@ Study many_moves(const Laboratory& laboratory);
 Study over_the_pole(const Laboratory& laboratory);
 Study through_the_focus(const Laboratory& laboratory);
 Study largest_numbers(const Laboratory& laboratory);
+// comfort.cpp
+Study lag_of_walls(const Laboratory& laboratory);
+Study walls_that_catch_up(const Laboratory& laboratory);
 // input.cpp
 Study moves_lost(const Laboratory& laboratory);
 Study releases_lost(const Laboratory& laboratory);

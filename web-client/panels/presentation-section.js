@@ -2,6 +2,7 @@ import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { holderName, say } from '../base/texts.js';
+import { gentleWalls } from './comfort.js';
 import { choice, facts } from './controls.js';
 import { pointing } from './pointing.js';
 import { each, joined, stateOf } from './section.js';
@@ -28,7 +29,7 @@ export function presentationSection(page) {
     name: 'presentation',
     title: say('presentation.title'),
     unfolded: others.unfolded,
-    ...joined([steering(commands), pointing(page), snapshot(commands, store), others]),
+    ...joined([steering(commands), pointing(page), gentleWalls(page), snapshot(commands, store), others]),
   };
 }
 

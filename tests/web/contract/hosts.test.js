@@ -17,6 +17,7 @@ describe('a host', () => {
   for (const frames of ['none', 'acknowledged', 'granted'])
     test(`sees the changes of the camera, in order, with frames beside: ${frames}`, async (t) => {
       const client = await steering(t, server);
+      await client.patch({ comfort: { on: false } }); // else there are changes of the walls' camera between
       const host = await ContractClient.join(t, server, { role: 'host', name: 'Wall 1' });
       const grant = () => {
         if (frames === 'granted') host.send({ type: 'frame' });
@@ -45,6 +46,39 @@ describe('a host', () => {
       } else assert.deepEqual(seen, expected, 'a client that keeps up gets each');
       assert.deepEqual(host.state, client.state);
     });
+
+  test('gets a camera that is limited in speed, and ends where the camera is', async (t) => {
+    const client = await steering(t, server);
+    await client.patch({ unit: { metres: 1 }, comfort: null });
+    const host = await ContractClient.join(t, server, { role: 'host', name: 'Wall 4' });
+    const before = host.state.camera;
+    assert.deepEqual(before, client.state.camera);
+    const { revision } = await client.ask({ type: 'navigate', rotate: [300, 0] });
+    await host.until('the flick', () => host.revision >= revision);
+    await client.until('the walls', () => client.state.walls);
+    assert.notDeepEqual(client.state.camera, before);
+    const { behindDegrees, behindMetres, ...walls } = host.state.walls;
+    assert.deepEqual(host.state.camera, walls);
+    assert.ok(behindDegrees > 10 && behindMetres > 0.5, `${behindDegrees} degrees, ${behindMetres} m`);
+    await host.until('rest', () => !host.state.walls);
+    assert.deepEqual(host.state.camera, client.state.camera);
+    const speeds = host.texts.filter(({ type, patch }) => type === 'patch' && patch.walls?.behindDegrees !== undefined);
+    assert.ok(speeds.length > 20, `${speeds.length} patches`);
+  });
+
+  test('has the camera at once where comfort is off, and a wrong limit is rejected', async (t) => {
+    const client = await steering(t, server);
+    const host = await ContractClient.join(t, server, { role: 'host' });
+    for (const [comfort, code] of [[{ degreesPerSecond: 0 }, 'out-of-range'], [{ metresPerSecond: '2' }, 'bad-message']]) {
+      const { message } = await client.refused({ type: 'patch', patch: { comfort } }, code);
+      assert.match(message, new RegExp(`'comfort.${Object.keys(comfort)[0]}'`));
+    }
+    await client.patch({ comfort: { on: false } });
+    const { revision } = await client.ask({ type: 'navigate', rotate: [300, 0] });
+    await host.until('the flick', () => host.revision >= revision);
+    assert.equal(host.state.walls, undefined);
+    assert.deepEqual(host.state.camera, client.state.camera);
+  });
 
   test('that tells what it shows is in stats, with its name, revision and lag', async (t) => {
     const client = await steering(t, server);

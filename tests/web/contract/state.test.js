@@ -57,12 +57,17 @@ const WRITABLE = {
   'unit/metres': { good: [0.001, 1e-12, 1e12, 0.0254], range: [0, -1, 1.1e12], type: ['1', [], {}, true] },
   'unit/shown': { good: ['mm', 'cm', 'm', 'in'], range: ['km', ''], type: [1, [], {}, true] },
   'quality/preference': { good: [0, 1, 0.25], range: [-0.01, 1.01], type: ['1', [], {}, true] },
+  'comfort/on': FLAG,
+  'comfort/degreesPerSecond': { good: [10, 720, 30], range: [0, -45, 721], type: ['45', [], {}, true] },
+  'comfort/degreesPerSecondSquared': { good: [10, 10000], range: [0, -1, 10001], type: ['180', [], {}, true] },
+  'comfort/metresPerSecond': { good: [0.1, 100], range: [0, -2, 101], type: ['2', [], {}, true] },
+  'comfort/metresPerSecondSquared': { good: [0.1, 1000], range: [0, -1, 1001], type: ['8', [], {}, true] },
   'quality/latencyTargetMs': { good: [100], range: [-1], type: ['100', [], {}, true] },
 };
 const READ_ONLY = [
   'scene', 'scene/name', 'scene/nodes', 'scene/bounds', 'scene/notices', 'camera/name', 'camera/near', 'camera/far', 'cameras', 'cameras/11/name',
   'renderer/solid', 'renderer/transparent', 'renderer/reflective', 'lights/items/9/name', 'lights/items/9/type', 'materials', 'materials/1/name',
-  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'control/absent', 'control/asking', 'clients', 'recording', 'measured',
+  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'control/absent', 'control/asking', 'clients', 'recording', 'measured', 'walls',
 ];
 const UNKNOWN = [
   'weather', 'camera/roll', 'navigation/speed', 'renderer/shadow', 'lights/ambient', 'lights/items/9/angle', 'backgrounds/image',
@@ -74,7 +79,7 @@ test('the document has every member that the contract names, and no null', async
   assert.equal(JSON.stringify(state).includes('null'), false);
   const present = [
     ...Object.keys(WRITABLE).filter((path) => path !== 'selection/node'),
-    ...READ_ONLY.filter((path) => !['selection/name', 'selection/path', 'control/holder', 'recording'].includes(path)),
+    ...READ_ONLY.filter((path) => !['selection/name', 'selection/path', 'control/holder', 'recording', 'walls'].includes(path)),
     'nodes', 'markers', 'views', 'sections', 'measures', 'selection', 'camera/node',
   ];
   assert.deepEqual(present.filter((path) => at(state, path) === undefined), []);

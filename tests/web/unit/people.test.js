@@ -18,6 +18,11 @@ test('who is in control comes first, then who may be, walls, and who only watche
   ]);
 });
 
+test('a wall that is behind says so', () => {
+  const rows = personRows({ clients, control: held() }, 'c1', '12° behind');
+  assert.deepEqual(lines(rows)[3], ['h1', 'Wall', 'wall', '12° behind']);
+});
+
 test('the holder hands over to others who may be in control, and declines who asks', () => {
   const rows = personRows({ clients, control: held({ asking: [{ client: 'c1', name: 'Windows' }] }) }, 'c2');
   assert.deepEqual(offered(rows), ['', 'give c3', 'give c1,decline c1', '', '']);

@@ -290,6 +290,11 @@ export const cs = {
   'pointing.done': 'Hotovo',
   'pointing.watchers': 'Diváci mohou ukazovat',
 
+  'comfort.on': 'Klidný pohyb na projekčních stěnách',
+  'comfort.speed': 'Stěny se otáčejí nejvýš o',
+  'comfort.behind': '{way} pozadu',
+  'comfort.walls': 'Stěny: {behind}',
+
   'snap.point': 'bod',
   'snap.vertex': 'roh',
   'snap.midpoint': 'střed hrany',

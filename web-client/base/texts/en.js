@@ -283,6 +283,11 @@ export const en = {
   'pointing.done': 'Done',
   'pointing.watchers': 'Watchers may point',
 
+  'comfort.on': 'Gentle motion on the walls',
+  'comfort.speed': 'Walls turn by at most',
+  'comfort.behind': '{way} behind',
+  'comfort.walls': 'Walls: {behind}',
+
   'snap.point': 'point',
   'snap.vertex': 'corner',
   'snap.midpoint': 'middle of an edge',

@@ -1,6 +1,7 @@
 import { button, element } from '../../base/element.js';
 import { onChange } from '../../base/store.js';
 import { clientName, say } from '../../base/texts.js';
+import { behindWords } from '../comfort.js';
 import { byName, rows } from '../controls.js';
 import { each } from '../section.js';
 
@@ -58,8 +59,8 @@ function present({ control }) {
   return {
     content: [list.element, others],
     show: each(
-      onChange(({ state, client }) => [state.clients, state.control, client], (clients, control, client) =>
-        list.show(personRows({ clients, control }, client))),
+      onChange(({ state, client }) => [state.clients, state.control, client, behindWords(state.walls)],
+        (clients, control, client, behind) => list.show(personRows({ clients, control }, client, behind))),
       onChange(({ state, stats, language }) => [state.clients, stats, language], (clients, stats) => {
         const count = furtherWatchers(clients, stats);
         others.textContent = count > 0 ? say('people.further', { count }) : '';
@@ -73,9 +74,10 @@ function present({ control }) {
  *
  * @param {Pick<StateDocument, 'clients'|'control'>} state
  * @param {string} [client]
+ * @param {string} [behind] how far hosts are
  * @returns {[string, Person][]}
  */
-export function personRows({ clients, control }, client) {
+export function personRows({ clients, control }, client, behind = '') {
   const { holder, asking } = control;
   // Who has lost the connection is not here, and in control all the same.
   const away = control.absent && holder ? { [holder]: { name: control.name, role: /** @type {const} */ ('control') } } : {};
@@ -88,8 +90,9 @@ export function personRows({ clients, control }, client) {
     id in away && say('people.absent'),
     asks.has(id) && say('people.asks'),
     role === 'host' && say('people.wall'),
+    role === 'host' && behind,
     role === 'view' && say('people.watches'),
-  ].filter((word) => word !== false);
+  ].filter((word) => word !== false && word !== '');
   return all.sort((a, b) => rank(a) - rank(b) || byName(a.name, b.name)).map((one) =>
     [one.id, { name: one.name, words: words(one), actions: one.role === 'control' ? actions({ ...one, holder, client, asks }) : [] }]);
 }

@@ -1,0 +1,60 @@
+// The camera of hosts, who stand in the picture: it follows the room's at bearable speeds.
+#include <algorithm>
+#include <cmath>
+
+#include "room/room.hpp"
+
+namespace vrut::server::room {
+
+namespace {
+
+constexpr SessionTime kWallsStep{std::llround(navigation::ComfortLimiter::kStep * 1e6)};
+
+navigation::ComfortLimits limits_of(const protocol::State& state) {
+    const protocol::ComfortState& comfort = state.comfort;
+    const double metres = state.unit.metres;
+    return {comfort.degrees_per_second, comfort.degrees_per_second_squared,
+            comfort.metres_per_second / metres, comfort.metres_per_second_squared / metres};
+}
+
+}  // namespace
+
+// It begins to step at what makes it move, and not at a clock's ticks: a log may begin at any time.
+void Room::use_walls() {
+    const bool is_limited = state_.comfort.on && std::ranges::any_of(clients_, [](const auto& entry) {
+                                return entry.second.role == protocol::Role::host;
+                            });
+    if (!is_limited) return walls_.reset();
+    if (!walls_) walls_.emplace(Walls{navigation::ComfortLimiter(camera())});
+    if (!moves() && !tap_ && walls_->limiter.rests_at(camera()))
+        walls_->due.reset();
+    else if (!walls_->due)
+        walls_->due = time_ + kWallsStep;
+}
+
+void Room::step_walls() {
+    if (!changing_.empty()) document();
+    changing_.clear();  // how it follows is nobody's doing
+    walls_->limiter.step(camera(), limits_of(state_));
+    *walls_->due += kWallsStep;
+    use_walls();
+}
+
+void Room::jump_walls() {
+    walls_.reset();
+    use_walls();
+}
+
+std::optional<protocol::WallsState> Room::walls_state() const {
+    if (!walls_ || walls_->limiter.pose() == camera()) return std::nullopt;
+    const scene::Camera& pose = walls_->limiter.pose();
+    const navigation::Behind behind = navigation::behind(pose, camera());
+    const scene::ClipRange range = scene::fit_clip_range(pose, scene_->bounds);
+    protocol::WallsState walls{pose.eye,  pose.focus, pose.up, pose.center, pose.fov, range.near,
+                               range.far, 0,          0};
+    walls.behind_degrees = std::min(behind.degrees, 180.0);
+    walls.behind_metres = behind.units * state_.unit.metres;
+    return walls;
+}
+
+}  // namespace vrut::server::room
