@@ -94,10 +94,8 @@ Turned turn_any(const scene::Camera& from, const scene::Camera& to, const glm::d
 Turned turned(const scene::Camera& from, const scene::Camera& to, const glm::dvec3& spin,
               const MotionLimit& limit) {
     const auto angles = level_angles(from), aim = level_angles(to);
-    const glm::dvec3 right = scene::right_direction(from);
-    const bool rolls = std::abs(glm::dot(spin, glm::cross(right, scene::kVertical))) > 1e-9;
-    Turned result = angles && aim && !rolls ? turn_level(*angles, *aim, spin, right, limit)
-                                            : turn_any(from, to, spin, limit);
+    Turned result = angles && aim ? turn_level(*angles, *aim, spin, scene::right_direction(from), limit)
+                                  : turn_any(from, to, spin, limit);
     if (result.arrives) result.basis = basis_of(to);
     return result;
 }

@@ -361,6 +361,25 @@ TEST_CASE("points that wait for their turn do not put off the picture at rest") 
     CHECK(level == "still");
 }
 
+TEST_CASE("walls that follow put off no picture at rest, and cause none") {
+    Drag drag;
+    TestClient host(drag.server.port());
+    host.join("host");
+    drag.change({{"unit", {{"metres", 1}}}, {"camera", {{"eye", {0, 1, 9}}, {"focus", {0, 1, 0}}}}});
+    drag.moves(1);
+    drag.change(
+        {{"comfort", {{"metresPerSecond", 1}}}, {"camera", {{"eye", {3, 1, 9}}, {"focus", {3, 1, 0}}}}});
+    drag.client.wait_for_still();
+    CHECK(drag.client.state.contains("walls"));
+    const std::uint64_t drawn = drag.server.metrics().samples_drawn;
+    for (int i = 0; i < 2; ++i) drag.client.grant();
+    while (!host.state.contains("walls")) REQUIRE(host.receive(1s));
+    int updates = 0;
+    for (; host.state.contains("walls"); ++updates) REQUIRE(host.receive(1s));
+    CHECK(updates > 20);
+    CHECK(drag.server.metrics().samples_drawn == drawn);
+}
+
 TEST_CASE("at rest nothing is drawn, read back or encoded, with and without grants") {
     Drag drag;
     const auto counted = [&] {

@@ -34,7 +34,7 @@ Lag lag_of(double degrees_per_second, const navigation::ComfortLimits& limits) {
         const double time = step * ComfortLimiter::kStep;
         const scene::Camera target = turned_by(degrees_per_second * std::min(time, kFlickTime));
         limiter.step(target, limits);
-        lag.largest = std::max(lag.largest, behind(limiter.pose(), target).degrees);
+        lag.largest = std::max(lag.largest, navigation::behind(limiter.pose(), target).degrees);
         lag.catches_up = std::max(time - kFlickTime, 0.0);
         if (time > kFlickTime && limiter.rests_at(target)) return lag;
     }

@@ -9,15 +9,20 @@ import { each } from './section.js';
  * @import { Page } from './section.js'
  */
 
+/** Until walls turn at full speed. */
+const EASES_S = 0.25;
+/** What is below does not jump under a finger. */
+const KEEPS_ITS_LINE = '\u00a0';
+
 /** How fast walls follow, and how far they are behind; nothing where there are none. @param {Pick<Page, 'commands'>} page */
 export function gentleWalls({ commands }) {
   const on = toggle(say('comfort.on'), (on) => commands.change({ comfort: { on } }));
   const speed = range(say('comfort.speed'), { min: 10, max: 180, step: 5, say: (degrees) => written(degrees, 0, '°/s') },
-    (degreesPerSecond) => commands.change({ comfort: { degreesPerSecond } }));
-  const behind = element('p', { className: 'note', data: { walls: 'behind' } });
-  const all = element('fieldset', { className: 'sections' }, on.element, speed.element);
+    (degrees) => commands.change({ comfort: { degreesPerSecond: degrees, degreesPerSecondSquared: degrees / EASES_S } }));
+  const behind = element('p', { className: 'note' });
+  const all = element('fieldset', { className: 'sections' }, on.element, speed.element, behind);
   return {
-    content: [all, behind],
+    content: [all],
     show: each(
       onChange(({ steers }) => [steers], (steers) => Object.assign(all, { disabled: !steers })),
       onChange(({ state }) => [state.clients], (clients) => Object.assign(all, { hidden: !hasWalls(clients) })),
@@ -27,8 +32,7 @@ export function gentleWalls({ commands }) {
         speed.element.hidden = !comfort?.on;
       }),
       onChange(({ state, language }) => [behindWords(state.walls), language], (words) => {
-        behind.textContent = words && say('comfort.walls', { behind: words });
-        behind.hidden = words === '';
+        behind.textContent = words ? say('comfort.walls', { behind: words }) : KEEPS_ITS_LINE;
       })),
   };
 }

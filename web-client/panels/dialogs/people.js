@@ -90,9 +90,9 @@ export function personRows({ clients, control }, client, behind = '') {
     id in away && say('people.absent'),
     asks.has(id) && say('people.asks'),
     role === 'host' && say('people.wall'),
-    role === 'host' && behind,
+    role === 'host' && behind !== '' && behind,
     role === 'view' && say('people.watches'),
-  ].filter((word) => word !== false && word !== '');
+  ].filter((word) => word !== false);
   return all.sort((a, b) => rank(a) - rank(b) || byName(a.name, b.name)).map((one) =>
     [one.id, { name: one.name, words: words(one), actions: one.role === 'control' ? actions({ ...one, holder, client, asks }) : [] }]);
 }
