@@ -1,6 +1,5 @@
 // The camera of hosts, who stand in the picture: it follows the room's at bearable speeds.
 #include <algorithm>
-#include <cmath>
 
 #include "room/room.hpp"
 
@@ -8,7 +7,8 @@ namespace vrut::server::room {
 
 namespace {
 
-constexpr SessionTime kWallsStep{std::llround(navigation::ComfortLimiter::kStep * 1e6)};
+constexpr SessionTime kWallsStep{16'000};
+static_assert(navigation::ComfortLimiter::kStep == 0.016);
 
 navigation::ComfortLimits limits_of(const protocol::State& state) {
     const protocol::ComfortState& comfort = state.comfort;
