@@ -212,6 +212,7 @@ TEST_CASE("a host follows another client's drag, and its matrices are the frame'
     const client::Camera before = host.client.camera();
     TestClient tablet(server.port());
     tablet.state = tablet.join();
+    tablet.send({{"type", "patch"}, {"patch", {{"comfort", {{"on", false}}}}}});  // it follows at once
     drag(tablet);
     tablet.send({{"type", "patch"}, {"id", 2}, {"patch", {{"camera", {{"fov", 33.3}}}}}});
     const std::int64_t revision = tablet.wait_for("ok")["revision"];
