@@ -45,6 +45,13 @@ tl::expected<ReadCueList, Error> parse_cue_list(std::string_view text, const Sta
     return or_error([&] { return read_or_throw(parse_strictly(text), shown); });
 }
 
+tl::expected<Patch, Error> parse_cue_patch(std::string_view text) {
+    return or_error([&] {
+        const CueList list = read_struct<CueList>(parse_strictly(text), "");
+        return Patch{std::make_shared<const Json>(Json{{"cues", *list.cues}}), {}};
+    });
+}
+
 std::vector<std::string> names_in_order(const SharedMap<CueState>& cues) {
     std::vector<std::string> names;
     names.reserve(cues->size());

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "messages.hpp"
 #include "state.hpp"
@@ -32,6 +34,9 @@ struct ReadCueList {
 /// Or what is wrong with the list as a whole. What a cue does not give is that of `shown`.
 tl::expected<ReadCueList, Error> read_cue_list(const nlohmann::json& list, const State& shown);
 tl::expected<ReadCueList, Error> parse_cue_list(std::string_view text, const State& shown);
+
+/// The patch that adds the cues of a list.
+tl::expected<Patch, Error> parse_cue_patch(std::string_view text);
 
 /// Names by `order`, then those without one, by name.
 std::vector<std::string> names_in_order(const SharedMap<CueState>& cues);

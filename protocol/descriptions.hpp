@@ -32,6 +32,7 @@ inline constexpr Vector<glm::dvec3> kAttenuation{0, kHuge};
 inline constexpr Number kFov{1, 170};
 inline constexpr Number kSpeed{0.01, 100};
 inline constexpr Number kOrder{-1e9, 1e9};
+inline constexpr Number kCueMs{0, 60'000};
 inline constexpr Matrix kMatrix{kHuge};
 inline constexpr Integer kId{};
 inline constexpr Integer kPixels{1, 8192};
@@ -182,7 +183,9 @@ void describe(V& v, const Cue*) {
     v.optional("name", &Cue::name, Text{100}, "Which. Without `step`.");
     v.optional("step", &Cue::step, Integer{-static_cast<std::int64_t>(kMaxCues), kMaxCues},
                "How many after the one that was shown last, in their order. Without `name`.");
-    v.optional("camera", &Cue::camera, kCameraOverlay, "Laid over the camera of the cue, which does not change.");
+    v.optional("camera", &Cue::camera, kCameraOverlay,
+               "Laid over the camera of the cue, which does not change.");
+    v.optional("ms", &Cue::ms, kCueMs, "How long it takes to come to it; without it, as the cue says.");
 }
 
 template <class V>
@@ -202,7 +205,8 @@ void describe(V& v, const Checked*) {
     v.required("id", &Checked::id, kId, "Of the `check`.");
     v.required("problems", &Checked::problems, List<Object<Checked::Problem>>{{}, 0, kMaxCueProblems},
                "What does not go with the scene; empty: all of it does.");
-    v.required("fitting", &Checked::fitting, List<Text>{Text{100}, 0, kMaxCues}, "Names of the cues that do.");
+    v.required("fitting", &Checked::fitting, List<Text>{Text{100}, 0, kMaxCues},
+               "Names of the cues that do.");
 }
 
 template <class V>
@@ -809,7 +813,7 @@ void describe(V& v, const CueState*) {
     v.writable("order", &CueState::order, kOrder,
                "Cues follow each other by it: the lowest first, then those without one, by name.");
     v.writable("text", &CueState::text, Text{kMaxCueText}, "For who speaks.");
-    v.writable("ms", &CueState::ms, Number{0, 60'000}, "How long it takes to come to it, in milliseconds.");
+    v.writable("ms", &CueState::ms, kCueMs, "How long it takes to come to it, in milliseconds.");
     v.writable("easing", &CueState::easing, word("smooth", "linear"), "As of `fly`.");
     v.writable("camera", &CueState::camera, Section<CueState::Camera>{}, "Where the camera flies to.");
     v.writable("lights", &CueState::lights, Section<CueState::Lights>{}, "Which light shines.");

@@ -209,6 +209,7 @@ struct Cue {
     std::optional<std::string> name;  ///< either this
     std::optional<int> step;          ///< or this
     CameraOverlay camera;             ///< over the cue's
+    std::optional<double> ms;         ///< instead of the cue's
 };
 
 /// Finds out what of a list of cues does not go with the scene.

@@ -410,9 +410,23 @@ void add_film(Command& command, RenderArguments& arguments) {
         ->default_str("as many as --fps shows while it lasts")
         ->needs(keyframes)
         ->group(kCamera);
-    add_images_per_second(command, arguments.fps)->needs(keyframes);
+    add_images_per_second(command, arguments.fps);
     add_nats(command, arguments.nats, "Let the workers of this NATS server draw (see 'worker').")
         ->excludes(command.get_option("--textures"));
+}
+
+/// After add_drawing().
+void add_cues(Command& command, RenderArguments& arguments) {
+    auto* cues = add_file(command, "--cues", arguments.cues,
+                          "Draw the cues of this list, one after the other (see 'cues').")
+                     ->group(kCamera);
+    for (const char* other : {"--keyframes", "--camera", "--eye", "--focus", "--up", "--fov", "--frames",
+                              "--nats", "--detail", "--reference", "--ids", "--stats"})
+        cues->excludes(command.get_option(other));
+    add_number(command, "--hold", arguments.hold, 0.0, 3600.0, "Stay N seconds at each cue")
+        ->capture_default_str()
+        ->needs(cues)
+        ->group(kCamera);
 }
 
 /// What the image is drawn with, and what is written besides. After add_film().
@@ -453,6 +467,8 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
         "The image shows the first view of the scene, unless options choose another one. --eye, --focus, "
         "--up and --fov have priority over --camera, and --camera has priority over --set.",
         "With --keyframes it draws a film: the images of a flight, in equal times from its start to its end. "
+        "With "
+        "--cues it draws the film of a presentation. "
         "Where --output ends in .mp4 they become one file, H.264 where libx264 is there, else MPEG-4. Else "
         "their names have a number behind that of --output: film-0001.png, film-0002.png and so on."};
     add_file(*command, "SCENE", arguments.scene, "Draw this scene file.")->required();
@@ -475,12 +491,15 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
     add_studio(*command, arguments.read);
     add_film(*command, arguments);
     add_drawing(*command, arguments);
+    add_cues(*command, arguments);
     command->exit_statuses = statuses("The image is written.");
-    command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
-                         {"vrut-preview render my.vrut -o my.jpg --size 1920x1080 --eye 3,2,5",
-                          "Draw it from a point, in another size."},
-                         {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
-                          "Trace a scene with mirrors ray by ray."}};
+    command->examples = {
+        {"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
+        {"vrut-preview render my.vrut -o my.jpg --size 1920x1080 --eye 3,2,5",
+         "Draw it from a point, in another size."},
+        {"vrut-preview render my.glb --cues my-cues.json -o my.mp4", "Draw a film of a presentation."},
+        {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
+         "Trace a scene with mirrors ray by ray."}};
     command->callback([&arguments] { render_command(arguments); });
     return command;
 }

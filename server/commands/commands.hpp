@@ -57,6 +57,8 @@ struct RenderArguments {
     std::optional<double> fov;
     std::filesystem::path keyframes;  ///< of a film; empty: one image
     int frames = 0;                   ///< of the film; 0: as many as `fps` makes of its time
+    std::filesystem::path cues;       ///< a list of them, of a film; empty: none
+    double hold = 2;                  ///< seconds at each cue
     std::optional<int> fps;           ///< images a second
     std::string nats;  ///< the address of NATS, whose workers draw the film; empty: this machine
     std::string set;   ///< a merge patch on the state

@@ -1,9 +1,8 @@
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <stdexcept>
 
 #include "commands/commands.hpp"
+#include "commands/film.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
 #include "room/room.hpp"
@@ -11,19 +10,8 @@
 
 namespace vrut::server::commands {
 
-namespace {
-
-std::string text_of_list(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream) throw std::runtime_error(path.string() + " cannot be read");
-    return text;
-}
-
-}  // namespace
-
 void cues_command(const CuesArguments& arguments) {
-    const std::string text = text_of_list(arguments.list), name = arguments.scene.filename().string();
+    const std::string text = read_text("LIST", arguments.list), name = arguments.scene.filename().string();
     auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name), {{}, arguments.read});
     if (!scene) throw std::runtime_error(scene.error());
     for (const protocol::Notice& notice : scene->notices)

@@ -17,13 +17,6 @@ namespace vrut::server::commands {
 
 namespace {
 
-std::string read_text(const std::string& option, const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream) throw std::runtime_error(option + ": " + path.string() + " cannot be read");
-    return text;
-}
-
 /// What one client of a server would do to change the state. Throws std::runtime_error.
 void say(room::Room& room, const std::string& option, decltype(protocol::ClientMessage::payload) payload) {
     room.handle_message("render", {1, std::move(payload)}, room::SessionTime(0));
@@ -90,7 +83,14 @@ std::vector<scene::Camera> wanted_cameras(const RenderArguments& arguments, cons
 
 }  // namespace
 
-Film film_of(const RenderArguments& arguments) {
+std::string read_text(const std::string& option, const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (!stream) throw std::runtime_error(option + ": " + path.string() + " cannot be read");
+    return text;
+}
+
+room::Room room_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
     auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name), {{}, arguments.read});
     if (!scene) throw std::runtime_error(scene.error());
@@ -103,7 +103,11 @@ Film film_of(const RenderArguments& arguments) {
     say(room, "--size", size);
     patch(room, "--set", arguments.set.empty() ? "{}" : arguments.set);
     for (const auto& [option, text] : arguments.patches) patch(room, option, text);
+    return room;
+}
 
+Film film_of(const RenderArguments& arguments) {
+    const room::Room room = room_of(arguments);
     plan::View view = room.visible();
     view.width = arguments.width;
     view.height = arguments.height;

@@ -9,6 +9,7 @@
 #include "messages.hpp"
 #include "plan/view.hpp"
 #include "renderer/renderer.hpp"
+#include "room/room.hpp"
 
 namespace vrut::server::commands {
 
@@ -18,7 +19,13 @@ struct Film {
     std::vector<scene::Camera> cameras;
 };
 
-/// Reads the scene, and lays over it what the arguments say. Throws std::runtime_error with a sentence.
+/// The text of the file that an option names. Throws std::runtime_error with a sentence, as all here do.
+std::string read_text(const std::string& option, const std::filesystem::path& path);
+
+/// The scene with what the arguments lay over it, but for the camera, in the hands of a client "render".
+room::Room room_of(const RenderArguments& arguments);
+
+/// The same, and its cameras.
 Film film_of(const RenderArguments& arguments);
 
 /// Computes the levels of detail that the view asks for.

@@ -5,6 +5,7 @@
 
 #include "base/files.hpp"
 #include "commands/commands.hpp"
+#include "commands/cue_film.hpp"
 #include "commands/film.hpp"
 #include "commands/film_writer.hpp"
 #include "commands/image_output.hpp"
@@ -205,6 +206,9 @@ void collect_film(const RenderArguments& arguments) {
 /// Before anything is read: throws where the output cannot be what the arguments say.
 void require_render_output(const RenderArguments& arguments) {
     const std::string& name = arguments.output.string();
+    const bool is_one_image = arguments.keyframes.empty() && arguments.cues.empty();
+    if (is_one_image && arguments.fps)
+        throw std::invalid_argument("--fps: one image has no speed; give --keyframes or --cues too");
     if (!is_film(arguments.output)) {
         format_of(arguments.output);
         if (arguments.frames > 0 && arguments.fps)
@@ -212,8 +216,9 @@ void require_render_output(const RenderArguments& arguments) {
                                         " numbered images have no speed; leave out --fps or --frames");
         return;
     }
-    if (arguments.keyframes.empty())
-        throw std::invalid_argument(name + ": a film needs --keyframes; name a single image .png or .jpg");
+    if (is_one_image)
+        throw std::invalid_argument(name +
+                                    ": a film needs --keyframes or --cues; name a single image .png or .jpg");
     require_film(arguments.output, arguments.width, arguments.height);
 }
 
@@ -221,6 +226,7 @@ void require_render_output(const RenderArguments& arguments) {
 
 void render_command(const RenderArguments& arguments) {
     require_render_output(arguments);
+    if (!arguments.cues.empty()) return draw_cues(arguments);
     if (!arguments.nats.empty()) return collect_film(arguments);
     Film film = film_of(arguments);
     if (arguments.reference)

@@ -6,6 +6,7 @@
 #include "commands/commands.hpp"
 #include "commands/film.hpp"
 #include "commands/image_output.hpp"
+#include "commands/room_film.hpp"
 #include "commands/session_scenes.hpp"
 #include "engine/encoder.hpp"
 #include "engine/frame_quality.hpp"
@@ -69,65 +70,22 @@ engine::PictureSize size_of_film(const ReplayArguments& arguments, const protoco
     return {even(view.width), even(view.height)};
 }
 
-/// Draws what the session showed, in equal steps of its time.
-class SessionFilm {
-public:
-    SessionFilm(const ReplayArguments& arguments, const room::EventLog& log)
-        : images_per_second_(arguments.fps),
-          size_(size_of_film(arguments, log.header)),
-          renderer_(arguments.device),
-          output_({arguments.film, size_.width, size_.height, arguments.fps, kJpegQuality, images_of(log),
-                   true}) {
-        require_size(size_.width, size_.height, renderer_);
-    }
+/// How many images show the session from its start to its end, or behind it.
+std::size_t images_of(const room::EventLog& log, int images_per_second) {
+    return images_until(log.lines.empty() ? room::SessionTime(0) : log.lines.back().at, images_per_second);
+}
 
-    /// What is shown at each step before `at`, behind which the room stands.
-    void draw_until(room::SessionTime at, room::Room& room) {
-        while (time_of(next_) < at) draw_next(room);
-    }
-
-    /// What is shown at the end.
-    void finish(room::Room& room) {
-        draw_next(room);
-        output_.finish();
-    }
-
-private:
-    static constexpr int kJpegQuality = 90;
-    static constexpr std::int64_t kSecond = 1'000'000;  // of room::SessionTime
-
-    room::SessionTime time_of(std::size_t image) const {
-        return room::SessionTime(kSecond * static_cast<std::int64_t>(image) / images_per_second_);
-    }
-
-    /// How many there are from the start to the end of the session, or behind it.
-    std::size_t images_of(const room::EventLog& log) const {
-        const std::int64_t end = log.lines.empty() ? 0 : log.lines.back().at.count();
-        return static_cast<std::size_t>(
-            (std::max<std::int64_t>(end, 0) * images_per_second_ + kSecond - 1) / kSecond + 1);
-    }
-
-    void draw_next(room::Room& room) {
-        room.advance(time_of(next_++));
-        plan::View view = room.visible();
-        view.width = size_.width;
-        view.height = size_.height;
-        view.samples = samples_of(engine::Refinement::better);
-        if (drawn_ == view) return output_.repeat();
-        plan::FrameStats stats;
-        renderer_.render(view, image_, stats);
-        output_.add(image_);
-        drawn_ = std::move(view);
-    }
-
-    const int images_per_second_;
-    const engine::PictureSize size_;
-    renderer::Renderer renderer_;
-    ImageOutput output_;
-    std::size_t next_ = 0;  // image
-    scene::Image image_;
-    std::optional<plan::View> drawn_;  // last
-};
+ImageOutput::Options film_options(const ReplayArguments& arguments, const room::EventLog& log) {
+    constexpr int kJpegQuality = 90;
+    const engine::PictureSize size = size_of_film(arguments, log.header);
+    return {arguments.film,
+            size.width,
+            size.height,
+            arguments.fps,
+            kJpegQuality,
+            images_of(log, arguments.fps),
+            true};
+}
 
 /// Before anything is read: throws where the film cannot be what the arguments say.
 void require_replay_output(const ReplayArguments& arguments) {
@@ -147,8 +105,9 @@ void replay_command(const ReplayArguments& arguments) {
     if (!log->cut.empty()) observe::log_warning("log_cut_off", {{"reason", log->cut}});
     std::optional<FrameWriter> frames;
     if (!arguments.frames.empty()) frames.emplace(arguments.frames, arguments.device);
-    std::optional<SessionFilm> film;
-    if (!arguments.film.empty()) film.emplace(arguments, *log);
+    std::optional<RoomFilm> film;
+    if (!arguments.film.empty())
+        film.emplace(film_options(arguments, *log), samples_of(engine::Refinement::better), arguments.device);
     SessionScenes scenes(arguments.log, arguments.scene, arguments.read);
     room::ReplayWatcher watcher;
     if (frames)

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/camera.hpp"
 #include "scene/scene.hpp"
 #include "state.hpp"
 

@@ -15,8 +15,8 @@ namespace {
 
 /// To where a cue is seen from, with `camera` laid over that.
 protocol::Fly flight_to(const CueState& cue, const protocol::CameraOverlay& camera) {
-    protocol::CameraOverlay pose{{}, cue.camera.eye, cue.camera.focus, cue.camera.up, cue.camera.center,
-                                 cue.camera.fov};
+    protocol::CameraOverlay pose{
+        {}, cue.camera.eye, cue.camera.focus, cue.camera.up, cue.camera.center, cue.camera.fov};
     if (camera.node) pose = {camera.node, {}, {}, {}, {}, {}};
     if (camera.eye) pose.eye = camera.eye;
     if (camera.focus) pose.focus = camera.focus;
@@ -50,7 +50,8 @@ std::optional<std::string> Room::cue_named(const Received& received, const proto
 void Room::apply(const Received& received, const protocol::Cue& message) {
     const std::optional<std::string> name = cue_named(received, message);
     if (!name) return;
-    const CueState cue = state_.cues->at(*name);
+    CueState cue = state_.cues->at(*name);
+    cue.ms = message.ms.value_or(cue.ms);
     const protocol::Fly fly = flight_to(cue, message.camera);
     if (const auto path = flight_path(fly, camera(), *scene_); !path)
         return reject(received, path.error().code.c_str(), path.error().message);

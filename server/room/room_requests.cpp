@@ -93,8 +93,9 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
             std::make_shared<const std::vector<plan::PlacedMarker>>(markers_of(*state_.markers, *placed));
     view.width = snapshot.width;
     view.height = snapshot.height;
-    PictureOrder order{received.client, view, header_of(state, view, view_size_), snapshot.format,
-                       snapshot.jpeg_quality, snapshot.samples};
+    PictureOrder order{
+        received.client, view, header_of(state, view, view_size_), snapshot.format, snapshot.jpeg_quality,
+        snapshot.samples};
     order.header.revision = document()->revision();
     order.header.snapshot = received.message.id;
     order.header.handled = *received.message.id;

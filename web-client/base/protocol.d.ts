@@ -36,6 +36,14 @@ export type CameraOverlay = {
   up?: Array<number>;
 };
 
+export type ClientCheck = {
+  /** A list of cues as in its file. */
+  cues: CueList;
+  /** Asks for exactly one answer, which has the same `id`. It rises. */
+  id?: number;
+  type: 'check';
+};
+
 export type ClientControl = {
   /** What is to happen with control. */
   action: 'take' | 'release' | 'ask' | 'cancel' | 'give' | 'decline';
@@ -44,6 +52,20 @@ export type ClientControl = {
   /** Asks for exactly one answer, which has the same `id`. It rises. */
   id?: number;
   type: 'control';
+};
+
+export type ClientCue = {
+  /** Laid over the camera of the cue, which does not change. */
+  camera?: CameraOverlay;
+  /** Asks for exactly one answer, which has the same `id`. It rises. */
+  id?: number;
+  /** How long it takes to come to it; without it, as the cue says. */
+  ms?: number;
+  /** Which. Without `step`. */
+  name?: string;
+  /** How many after the one that was shown last, in their order. Without `name`. */
+  step?: number;
+  type: 'cue';
 };
 
 export type ClientFit = {
@@ -133,7 +155,7 @@ export type ClientKeyup = {
   type: 'keyup';
 };
 
-export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientSwing | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShare | ClientShown | ClientPoint;
+export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientSwing | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientCue | ClientCheck | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShare | ClientShown | ClientPoint;
 
 export type ClientNavigate = {
   /** Asks for exactly one answer, which has the same `id`. It rises. */
@@ -388,6 +410,8 @@ export type ClientShown = {
 export type ClientSnapshot = {
   /** Laid over the shared camera, which does not change. */
   camera?: CameraOverlay;
+  /** The scene as this cue shows it; it is not shown to others. */
+  cue?: string;
   /** Of the file. */
   format?: 'jpeg' | 'png';
   /** Pixels. */
@@ -405,6 +429,8 @@ export type ClientSnapshot = {
     /** Edges only. */
     wireframe?: boolean;
   };
+  /** A pixel; without it as many as at full accuracy. */
+  samples?: number;
   type: 'snapshot';
   /** Pixels. */
   width: number;
@@ -465,6 +491,61 @@ export type ClientWheel = {
   /** CSS pixels from the view's top edge. */
   y: number;
 };
+
+export type CueList = {
+  /** As the state's `cues`. */
+  cues: Cues;
+  /** What the file is. */
+  format: 'vrut-preview-cues';
+  /** Name of the scene's file; missing: any. */
+  scene?: string;
+  /** Of this format. */
+  version: number;
+};
+
+export type Cues = Record<string, null | {
+  backgrounds?: null | {
+    active?: null | string;
+    color?: null | Array<number>;
+  };
+  camera?: null | {
+    center?: null | Array<number>;
+    eye?: null | Array<number>;
+    focus?: null | Array<number>;
+    fov?: null | number;
+    up?: null | Array<number>;
+  };
+  easing?: null | 'smooth' | 'linear';
+  lights?: null | {
+    active?: null | string;
+  };
+  ms?: null | number;
+  nodes?: null | Record<string, null | {
+    active?: null | boolean;
+    activeChild?: null | number;
+    material?: null | number;
+    matrix?: null | Array<number>;
+  }>;
+  order?: null | number;
+  sectionBox?: null | {
+    caps?: null | boolean;
+    hatched?: null | boolean;
+    max?: null | Array<number>;
+    min?: null | Array<number>;
+    on?: null | boolean;
+  };
+  sections?: null | Record<string, null | {
+    caps?: null | boolean;
+    distance?: null | number;
+    hatched?: null | boolean;
+    normal?: null | Array<number>;
+    on?: null | boolean;
+  }>;
+  selection?: null | {
+    node?: null | number;
+  };
+  text?: null | string;
+}>;
 
 export type EventLogConnected = {
   /** Milliseconds since the log began, in whole microseconds. */
@@ -830,9 +911,24 @@ export type RenderJob = {
   width: number;
 };
 
+export type ServerChecked = {
+  /** Names of the cues that do. */
+  fitting: Array<string>;
+  /** Of the `check`. */
+  id: number;
+  /** What does not go with the scene; empty: all of it does. */
+  problems: Array<{
+    /** Of which cue; missing: of the whole list. */
+    cue?: string;
+    /** What is wrong, a sentence. */
+    message: string;
+  }>;
+  type: 'checked';
+};
+
 export type ServerError = {
   /** For programs. */
-  code: 'bad-message' | 'out-of-range' | 'unknown-member' | 'read-only' | 'unknown-node' | 'unknown-frame' | 'stale-revision' | 'not-in-control' | 'not-allowed' | 'refused-scene' | 'busy' | 'too-many' | 'failed';
+  code: 'bad-message' | 'out-of-range' | 'unknown-member' | 'read-only' | 'unknown-node' | 'unknown-cue' | 'unknown-frame' | 'stale-revision' | 'not-in-control' | 'not-allowed' | 'refused-scene' | 'busy' | 'too-many' | 'failed';
   /** Of the message, where it could be read. */
   id?: number;
   /** One sentence for a person, which names the culprit. */
@@ -860,7 +956,7 @@ export type ServerLoading = {
   type: 'loading';
 };
 
-export type ServerMessage = ServerWelcome | ServerOk | ServerPicked | ServerPointed | ServerFlown | ServerTree | ServerScenes | ServerShared | ServerLoading | ServerStats | ServerError | ServerState | ServerPatch;
+export type ServerMessage = ServerWelcome | ServerOk | ServerPicked | ServerPointed | ServerFlown | ServerTree | ServerChecked | ServerScenes | ServerShared | ServerLoading | ServerStats | ServerError | ServerState | ServerPatch;
 
 export type ServerOk = {
   /** Of the message. */
@@ -1131,6 +1227,89 @@ export type StateDocument = {
     /** As in the holder's `hello`. */
     name?: string;
   };
+  /** The cue that was shown last. */
+  cue?: {
+    /** Its name among the `cues`. */
+    name: string;
+  };
+  /** What a presentation shows, by name. */
+  cues: Record<string, {
+    /** What stands behind the scene. */
+    backgrounds: {
+      /** Key of the background that is shown, or `color`: the plain one. */
+      active: string;
+      /** Red, green, blue, alpha of the plain background. */
+      color: Array<number>;
+    };
+    /** Where the camera flies to. */
+    camera: {
+      /** The centre of rotation. */
+      center: Array<number>;
+      /** Where the camera stands. */
+      eye: Array<number>;
+      /** What it looks at. */
+      focus: Array<number>;
+      /** The vertical angle of view in degrees. */
+      fov: number;
+      /** Which way is up in the image; unit, at right angles to the view. */
+      up: Array<number>;
+    };
+    /** As of `fly`. */
+    easing: 'smooth' | 'linear';
+    /** Which light shines. */
+    lights: {
+      /** Key of the light that shines. */
+      active: string;
+    };
+    /** How long it takes to come to it, in milliseconds. */
+    ms: number;
+    /** By id: all that differs from the file. */
+    nodes: Record<string, {
+      /** False hides the node, with all below it. */
+      active?: boolean;
+      /** Of a switch: counted from 0, −1 none, −2 all. */
+      activeChild?: number;
+      /** Id of the material of its geometry. */
+      material?: number;
+      /** From the node's space to its parent's; the last row is 0 0 0 1. */
+      matrix?: Array<number>;
+    }>;
+    /** Cues follow each other by it: the lowest first, then those without one, by name. */
+    order?: number;
+    /** A box that cuts the scene open. */
+    sectionBox: {
+      /** Watertight parts are closed where it cuts them. */
+      caps: boolean;
+      /** The caps have lines across. */
+      hatched: boolean;
+      /** Its highest corner; at the start around the scene. */
+      max: Array<number>;
+      /** Its lowest corner; below `max` in each direction. */
+      min: Array<number>;
+      /** True: nothing outside of the box is shown. */
+      on: boolean;
+    };
+    /** All planes that cut the scene open, by name. */
+    sections: Record<string, {
+      /** Watertight parts are closed where it cuts them. */
+      caps: boolean;
+      /** Of the plane from the world's origin, along `normal`. */
+      distance: number;
+      /** The caps have lines across. */
+      hatched: boolean;
+      /** Where it leads is cut away; unit, of any length but 0 in a patch. A new plane must have it. */
+      normal: Array<number>;
+      /** False: it cuts nothing. */
+      on: boolean;
+    }>;
+    /** What is selected. */
+    selection: {
+      /** The node that is selected. */
+      node?: number;
+    };
+    /** For who speaks. */
+    text: string;
+  }>;
   /** The lights, of which one shines. */
   lights: {
     /** Key of the item that shines; at the start `headlight`. */
@@ -1386,6 +1565,49 @@ export type StatePatch = {
     metresPerSecondSquared?: null | number;
     on?: null | boolean;
   };
+  cues?: null | Record<string, null | {
+    backgrounds?: null | {
+      active?: null | string;
+      color?: null | Array<number>;
+    };
+    camera?: null | {
+      center?: null | Array<number>;
+      eye?: null | Array<number>;
+      focus?: null | Array<number>;
+      fov?: null | number;
+      up?: null | Array<number>;
+    };
+    easing?: null | 'smooth' | 'linear';
+    lights?: null | {
+      active?: null | string;
+    };
+    ms?: null | number;
+    nodes?: null | Record<string, null | {
+      active?: null | boolean;
+      activeChild?: null | number;
+      material?: null | number;
+      matrix?: null | Array<number>;
+    }>;
+    order?: null | number;
+    sectionBox?: null | {
+      caps?: null | boolean;
+      hatched?: null | boolean;
+      max?: null | Array<number>;
+      min?: null | Array<number>;
+      on?: null | boolean;
+    };
+    sections?: null | Record<string, null | {
+      caps?: null | boolean;
+      distance?: null | number;
+      hatched?: null | boolean;
+      normal?: null | Array<number>;
+      on?: null | boolean;
+    }>;
+    selection?: null | {
+      node?: null | number;
+    };
+    text?: null | string;
+  }>;
   lights?: null | {
     active?: null | string;
     items?: null | Record<string, null | {

@@ -150,6 +150,7 @@ export class Stage {
     store.subscribe(({ prepares, steers, state, hasPicture }) => [steers && hasPicture ? prepares : null, state?.cues],
       (prepares) => {
         this.#preparation.show(prepares);
+        this.#lines.hold('prepare', this.#preparation.isOn ? say('cues.onlyYou', { name: prepares }) : '');
         this.#input.enabled = store.now.steers && !this.#preparation.isOn;
       });
     store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());

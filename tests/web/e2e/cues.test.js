@@ -125,6 +125,43 @@ for (const [name, size] of Object.entries(SIZES)) {
       }
     });
 
+    test('a cue is prepared on a picture that nobody else sees, and taken', async () => {
+      const seen = structuredClone(state());
+      const image = page.locator('#prepare img');
+      await chip('Arrival', false).or(chip('Arrival', true)).tap();
+      await until('the first cue', () => state().cue.name === 'Arrival' && state().camera.fov === state().cues.Arrival.camera.fov);
+      const revisions = watchers.map(({ wire }) => wire.revision);
+      const before = pose(state().camera);
+      await button('Prepare', strip()).tap();
+      await line('Only you see “Close” until you take it.').waitFor();
+      await page.waitForFunction(() => document.querySelector('#prepare img').naturalWidth === innerWidth);
+      await strip().getByText('It is new.').waitFor();
+      await presenter.screenshot(`cues-${name}-prepare`);
+      await assertClean(page, 'a cue that is prepared');
+      const first = await image.getAttribute('src');
+      const touch = (type, at) => presenter.finger(type, at ? [{ id: 0, x: at[0], y: at[1] }] : []);
+      await touch('touchStart', [200, 300]);
+      await touch('touchMove', [230, 310]);
+      await touch('touchMove', [260, 320]);
+      await touch('touchEnd');
+      await page.waitForFunction((address) => {
+        const shown = document.querySelector('#prepare img');
+        return shown.src !== address && shown.naturalWidth === innerWidth;
+      }, first);
+      assert.deepEqual(pose(state().camera), before);
+      assert.deepEqual(watchers.map(({ wire }) => wire.revision), revisions);
+      await button('Take', strip()).tap();
+      await until('the cue', () => state().cue.name === 'Close' && state().camera.fov === seen.cues.Close.camera.fov);
+      assert.notDeepEqual(state().camera.eye, state().cues.Close.camera.eye);
+      for (const { wire } of watchers) await wire.until('the cue', () => wire.state.cue.name === 'Close');
+      await line('Only you see “Wide” until you take it.').waitFor();
+      await button('Keep this view', strip()).waitFor({ state: 'hidden' });
+      await button('Prepare', strip()).tap();
+      await page.locator('#prepare').waitFor({ state: 'hidden' });
+      await button('Previous cue', strip()).tap();
+      await until('the first cue', () => state().cue.name === 'Arrival');
+    });
+
     test('one who steers meanwhile stops the way, and the next cue begins there', async () => {
       await presenter.say({ type: 'patch', patch: { cues: { Close: { ms: 60_000 } } } });
       await page.keyboard.press('PageDown');

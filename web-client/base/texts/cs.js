@@ -280,6 +280,7 @@ export const cs = {
   'cues.take': 'Ukázat',
   'cues.keep': 'Ponechat tento pohled',
   'cues.kept': '„{name}“ je vidět odtud.',
+  'cues.onlyYou': '„{name}“ vidíte jen vy, dokud ho neukážete.',
   'cues.export': 'Uložit seznam',
   'cues.import': 'Otevřít seznam',
   'cues.imported': 'Ze seznamu je převzato {count} záběrů.',

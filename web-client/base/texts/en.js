@@ -273,6 +273,7 @@ export const en = {
   'cues.take': 'Take',
   'cues.keep': 'Keep this view',
   'cues.kept': '“{name}” is seen from here.',
+  'cues.onlyYou': 'Only you see “{name}” until you take it.',
   'cues.export': 'Save the list',
   'cues.import': 'Open a list',
   'cues.imported': '{count} cues are taken from the list.',
