@@ -133,6 +133,50 @@ test('render draws a film: its images begin at the camera, pass the keyframes in
   fails(2, /--frames requires --keyframes/, 'render', CAR, '-o', file('x.png'), '--frames', '3');
 });
 
+const CUES = {
+  Arrival: { order: 1, ms: 60_000, camera: { eye: [4, 1, 3], focus: [0, 0.6, 0], up: [0, 1, 0] } },
+  Bare: { order: 2, ms: 400, camera: { fov: 30 }, nodes: { 101: { active: false } } },
+};
+const listOf = (name, cues, more = {}) =>
+  fs.writeFileSync(file(name), JSON.stringify({ format: 'vrut-preview-cues', version: 1, cues, ...more }));
+
+test('render draws the film of a list of cues: at rest at each, on its way between them', () => {
+  listOf('cues.json', CUES);
+  const draw = (name, ...options) => succeeds('render', CAR, '-o', file(name), '--size', '64x36', '--samples', '1', ...options);
+  draw('cue.png', '--cues', file('cues.json'), '--fps', '10', '--hold', '0.3');
+  draw('arrival.png', '--eye', '4,1,3', '--focus', '0,0.6,0');
+  draw('bare.png', '--fov', '30', '--set', '{"nodes":{"101":{"active":false}}}');
+  const images = fs.readdirSync(folder).filter((name) => /^cue-\d+\.png$/.test(name)).sort().map((name) => fs.readFileSync(file(name)));
+  assert.equal(images.length, 11); // 0.3 s, 0.4 s on the way, 0.3 s, and the end
+  for (const i of [0, 1, 2]) assert.deepEqual(images[i], fs.readFileSync(file('arrival.png')), `image ${i + 1}`);
+  for (const i of [7, 8, 9, 10]) assert.deepEqual(images[i], fs.readFileSync(file('bare.png')), `image ${i + 1}`);
+  assert.equal(new Set(images.map((image) => image.toString('base64'))).size, 6);
+});
+
+test('what of a list of cues does not go with a scene is printed, and nothing is drawn of it', () => {
+  listOf('cues.json', CUES);
+  assert.equal(succeeds('cues', 'check', file('cues.json'), CAR), '');
+  listOf('wrong.json', { ...CUES, Lost: { selection: { node: 9_999_999 }, lights: { active: '9999998' } } }, { scene: 'other.vrut' });
+  const { status, stdout, stderr } = run('cues', 'check', file('wrong.json'), CAR);
+  assert.equal(status, 1);
+  const lines = stdout.trim().split('\n');
+  assert.equal(lines.length, 3);
+  for (const [i, words] of [/made for 'other\.vrut'/, /no light '9999998'/, /no node 9999999/].entries()) assert.match(lines[i], words);
+  assert.match(stderr, /^vrut-preview: .*wrong\.json: not all of the list goes with car-20k\.vrut.*\n$/);
+  const film = (list) => ['render', CAR, '-o', file('no.png'), '--cues', file(list)];
+  fails(1, /wrong\.json: the list was made for/, ...film('wrong.json'));
+  listOf('none.json', {});
+  fails(1, /none\.json: the list has no cues/, ...film('none.json'));
+  listOf('newer.json', CUES, { version: 2 });
+  fails(1, /newer\.json: the list is of version 2.*newer program/, ...film('newer.json'));
+  fails(1, /--cues: .*missing\.json cannot be read/, ...film('missing.json'));
+  fails(2, /--hold requires --cues/, 'render', CAR, '-o', file('no.png'), '--hold', '1');
+  fails(2, /--eye excludes --cues/, ...film('cues.json'), '--eye', '1,2,3');
+  fails(2, /--fps: one image has no speed/, 'render', CAR, '-o', file('no.png'), '--fps', '5');
+  fails(2, /ACTION: draw not in \{check\}/, 'cues', 'draw', file('cues.json'), CAR);
+  assert.deepEqual(fs.readdirSync(folder).filter((name) => name.startsWith('no')), ['none.json']);
+});
+
 test('a film that cannot be is rejected before the scene is read', (t) => {
   const none = file('no-scene.vrut');
   const film = (...options) => ['render', none, '-o', file('my.mp4'), '--keyframes', file('flight.json'), ...options];
