@@ -71,6 +71,7 @@ async function succeeds(running) {
 /** A client of role control that knows the state, and how it came about. */
 class Watcher {
   patches = [];
+  pointed = [];
 
   static async join() {
     const self = new Watcher();
@@ -82,6 +83,7 @@ class Watcher {
         const message = JSON.parse(data);
         if (message.type === 'state') resolve((self.state = message.state));
         if (message.type === 'tree') self.tree = message.nodes;
+        if (message.type === 'pointed') self.pointed.push(message);
         if (message.type === 'patch') self.patches.push(message.patch);
         if (message.type === 'patch') self.state = merged(self.state, message.patch);
       });
@@ -156,6 +158,7 @@ test('each script tells its usage', async () => {
   assert.match(await succeeds(python('sweep.py', '--help')), /--normal/);
   assert.match(await succeeds(python('gaps.py', '--help')), /--second/);
   assert.match(await succeeds(python('show_cues.py', '--help')), /--hold/);
+  assert.match(await succeeds(python('point.py', '--help')), /--seconds/);
   assert.match(await succeeds(snapshot('--help')), /--camera/);
   assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
   assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
@@ -165,7 +168,7 @@ test('each script tells its usage', async () => {
 });
 
 test('a wrong token is told in a sentence', async () => {
-  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []], ['gaps.py', []], ['show_cues.py', []]]) {
+  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []], ['gaps.py', []], ['show_cues.py', []], ['point.py', []]]) {
     const result = await python(script, ...args, '--token', 'guess');
     assert.equal(result.status, 1);
     assert.equal(result.stderr, `${script}: the token is wrong\n`);
@@ -197,6 +200,16 @@ test('orbit.py saves the views of a whole turn, told the address as it is printe
     const turn = (directions[i - 1] - directions[i] + 360) % 360;
     assert.ok(Math.abs(turn - 120) < 1e-9, `turned by ${turn}`);
   }
+});
+
+test('point.py points everybody to the car, and takes the point away again', async () => {
+  const points = (await succeeds(python('point.py', '--seconds', '0.4'))).trim().split('\n').map((line) => line.split(' ').map(Number));
+  assert.ok(points.length > 1 && points.every((point) => point.length === 3 && point.every(Number.isFinite)), `${points}`);
+  const { min, max } = watcher.state.scene.bounds;
+  for (const point of points) point.forEach((x, i) => assert.ok(x > min[i] - 0.01 && x < max[i] + 0.01, `${point}`));
+  await watcher.until(() => watcher.pointed.length >= 2 && !watcher.pointed.at(-1).point);
+  const told = watcher.pointed.filter(({ name }) => name === 'point.py');
+  assert.deepEqual(told.slice(0, 1).map(({ point }) => point.map((x) => Number(x.toFixed(4)))), points.slice(0, 1));
 });
 
 test('show_cues.py shows a list, saves a picture of each cue, and takes the list away again', async () => {
