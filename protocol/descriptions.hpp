@@ -185,7 +185,7 @@ void describe(V& v, const Cue*) {
                "How many after the one that was shown last, in their order. Without `name`.");
     v.optional("camera", &Cue::camera, kCameraOverlay,
                "Laid over the camera of the cue, which does not change.");
-    v.optional("ms", &Cue::ms, kCueMs, "How long it takes to come to it; without it, as the cue says.");
+    v.optional("ms", &Cue::ms, kCueMs, "How long it takes to come to it; without it the cue's own time.");
 }
 
 template <class V>
@@ -196,7 +196,7 @@ void describe(V& v, const Check*) {
 
 template <class V>
 void describe(V& v, const Checked::Problem*) {
-    v.optional("cue", &Checked::Problem::cue, kName, "Of which cue; missing: of the whole list.");
+    v.optional("cue", &Checked::Problem::cue, kName, "The cue; missing: it is the whole list.");
     v.required("message", &Checked::Problem::message, kName, "What is wrong, a sentence.");
 }
 

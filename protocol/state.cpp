@@ -58,7 +58,7 @@ void check_sections(State& state, const SharedMap<CueState>& before) {
     state.cues.set(std::move(cues));
 }
 
-/// What entries of a patch do not say, or give as null, is that of `saved`.
+/// Members that entries of a patch do not have, or have as null, are those of `saved`.
 template <class T>
 void save_present(const Json& entries, const T& saved, SharedMap<T>& starting, SharedMap<T>& present) {
     auto at_start = *starting, now = *present;
@@ -85,7 +85,7 @@ CueState cue_of(const State& state) {
     return cue;
 }
 
-/// New cues, less the tables and the selection that the patch gives: those are to be what it says alone.
+/// New cues, less the tables and the selection that the patch gives: those are to be the patch's alone.
 SharedMap<CueState>::Map without_given(const Json& patch, SharedMap<CueState>::Map cues,
                                        const SharedMap<CueState>::Map& before) {
     for (const auto& [name, value] : patch.items()) {

@@ -208,8 +208,8 @@ test('point.py points everybody to the car, and takes the point away again', asy
   const { min, max } = watcher.state.scene.bounds;
   for (const point of points) point.forEach((x, i) => assert.ok(x > min[i] - 0.01 && x < max[i] + 0.01, `${point}`));
   await watcher.until(() => watcher.pointed.length >= 2 && !watcher.pointed.at(-1).point);
-  const told = watcher.pointed.filter(({ name }) => name === 'point.py');
-  assert.deepEqual(told.slice(0, 1).map(({ point }) => point.map((x) => Number(x.toFixed(4)))), points.slice(0, 1));
+  const seen = watcher.pointed.filter(({ name }) => name === 'point.py');
+  assert.deepEqual(seen.slice(0, 1).map(({ point }) => point.map((x) => Number(x.toFixed(4)))), points.slice(0, 1));
 });
 
 test('show_cues.py shows a list, saves a picture of each cue, and takes the list away again', async () => {

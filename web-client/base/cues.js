@@ -23,7 +23,7 @@ export function cueAfter({ cues, cue }, steps) {
   return at < 0 ? undefined : names[at];
 }
 
-/** The members of a cue that say what is seen. */
+/** The members of a cue that make its picture. */
 export const LOOKS = ['camera', 'lights', 'backgrounds', 'selection', 'nodes', 'sections', 'sectionBox'];
 
 /** What a patch has for a cue to become what is shown. */

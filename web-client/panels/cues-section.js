@@ -126,7 +126,7 @@ function files({ commands, store, offer, report }) {
     input.value = '';
     if (file) await take(await file.text());
   };
-  const tell = (sentences) => {
+  const show = (sentences) => {
     problems.replaceChildren(...sentences.map((sentence) => element('li', {}, sentence)));
     problems.hidden = sentences.length === 0;
     if (sentences.length > 0) problems.focus();
@@ -142,7 +142,7 @@ function files({ commands, store, offer, report }) {
       found.push(...answer.problems.map(({ message }) => message));
       fitting.push(...answer.fitting);
     }
-    tell([...new Set(found)]);
+    show([...new Set(found)]);
     await put(Object.fromEntries(fitting.map((name) => [name, list.cues[name]])));
   };
   const put = async (taken) => {

@@ -17,6 +17,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     let browser;
     let presenter;
     let watchers;
+    let colleague;
     let page;
     let menu;
 
@@ -30,7 +31,9 @@ for (const [name, size] of Object.entries(SIZES)) {
         return tablet;
       };
       presenter = await open(server.address);
-      watchers = [await open(`${server.address}#watch`), await open(`${server.address}#watch`)];
+      watchers = [];
+      for (let i = 0; i < 3; ++i) watchers.push(await open(`${server.address}#watch`));
+      colleague = await open(server.address);
       ({ page } = presenter);
       menu = page.locator('[data-section="cues"]');
       await page.locator('#menu-button').tap();
@@ -207,6 +210,27 @@ for (const [name, size] of Object.entries(SIZES)) {
       await open('no list');
       await line('This file is no list of cues.').waitFor();
       assert.deepEqual(state().cues, list.cues);
+    });
+
+    test('the presenter is lost while they prepare: all keep what they have, and a colleague goes on', async () => {
+      await button('Arrival').tap();
+      await until('the first cue', () => state().cue?.name === 'Arrival' && state().camera.fov === state().cues.Arrival.camera.fov);
+      await button('Present').tap();
+      await button('Prepare', strip()).tap();
+      await line('Only you see “Close” until you take it.').waitFor();
+      const { holder } = state().control;
+      const shown = pose(watchers[0].wire.state.camera);
+      await page.close();
+      for (const { wire } of [...watchers, colleague]) {
+        await wire.until('nobody there', () => wire.state.control.absent);
+        assert.equal(wire.state.cue.name, 'Arrival');
+        assert.deepEqual(pose(wire.state.camera), shown);
+      }
+      await colleague.say({ type: 'control', action: 'take' });
+      await colleague.wire.until('control', () => colleague.wire.state.control.holder !== holder && !colleague.wire.state.control.absent);
+      await colleague.page.locator('#view').focus();
+      await colleague.page.keyboard.press('PageDown');
+      for (const { wire } of [...watchers, colleague]) await wire.until('the next cue', () => wire.state.cue.name === 'Close');
     });
   });
 }
