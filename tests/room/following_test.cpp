@@ -82,7 +82,8 @@ std::string anything(std::mt19937& dice, int id) {
     const auto number = [&](int most) { return static_cast<int>(dice() % static_cast<unsigned>(most)); };
     const std::string with_id = R"("id":)" + std::to_string(id);
     const std::string x = std::to_string(number(400)), y = std::to_string(number(300));
-    switch (number(12)) {
+    const std::string cue = std::to_string(number(3));
+    switch (number(14)) {
         case 0:
             return pointer("down", number(1280), number(720), 1);
         case 1:
@@ -108,6 +109,14 @@ std::string anything(std::mt19937& dice, int id) {
         case 10:
             return R"({"type":"fly",)" + with_id + R"(,"keyframes":[{"at":0,"camera":{}},{"at":)" +
                    std::to_string(100 + number(900)) + R"(,"camera":{"eye":[)" + x + R"(,2,9]}}]})";
+        case 11:
+            return R"({"type":"patch",)" + with_id + R"(,"patch":{"cues":{"cue )" + cue + R"(":)" +
+                   (number(4) ? R"({"ms":)" + std::to_string(number(900)) + R"(,"camera":null,"nodes":null}})"
+                              : "null}") +
+                   "}}";
+        case 12:
+            return R"({"type":"cue",)" + with_id +
+                   (number(2) ? R"(,"name":"cue )" + cue + R"("})" : R"(,"step":1})");
         default:
             return R"({"type":"pick",)" + with_id + R"(,"x":)" + x + R"(,"y":)" + y + R"(,"then":"select"})";
     }
