@@ -35,6 +35,7 @@ inline constexpr Number kOrder{-1e9, 1e9};
 inline constexpr Number kCueMs{0, 60'000};
 inline constexpr Matrix kMatrix{kHuge};
 inline constexpr Integer kId{};
+inline constexpr Integer kDate{0, kLatestDate};
 inline constexpr Integer kPixels{1, 8192};
 inline constexpr Integer kJpegQuality{1, 100};
 inline constexpr Text kName{std::numeric_limits<std::uint32_t>::max()};
@@ -710,11 +711,28 @@ void describe(V& v, const SwingState*) {
 }
 
 template <class V>
+void describe(V& v, const Marker::View*) {
+    using View = Marker::View;
+    v.required("eye", &View::eye, kPosition, "Where the camera stands.");
+    v.required("focus", &View::focus, kPosition, "What it looks at.");
+    v.required("up", &View::up, kPosition,
+               "Which way is up in the image; unit, at right angles to the view.");
+    v.required("center", &View::center, kPosition, "The centre of rotation.");
+    v.required("fov", &View::fov, kFov, "The vertical angle of view in degrees.");
+}
+template <class V>
 void describe(V& v, const Marker*) {
     v.writable("point", &Marker::point, kPosition,
                "In the world, or in the space of `node`. A new marker must have it.");
     v.writable("node", &Marker::node, kId, "The marker moves with this node.");
     v.writable("text", &Marker::text, Text{1000}, "For clients to show; a frame has the sign only.");
+    v.writable("author", &Marker::author, kClientName,
+               "Who made it. Of a new marker without one: the client's name, if it has one.");
+    v.writable("time", &Marker::time, kDate,
+               "When it was made, in milliseconds since 1970 in UTC, by the clock of its client.");
+    v.writable("view", &Marker::view, Object<Marker::View>{},
+               "The camera that it was made from. Of a new marker without one: the present camera.");
+    v.writable("done", &Marker::done, Flag{}, "What it asks for is done.");
 }
 
 template <class V>
@@ -902,7 +920,7 @@ void describe(V& v, const State*) {
     v.fixed("swings", &State::swings, SharedTable<Table<SwingState>>{},
             "Nodes that are on their way about their hinges, by id.");
     v.writable("markers", &State::markers, SharedTable<Entries<Marker>>{{{}, kMaxEntries, "point"}},
-               "Signs in the scene, by name.");
+               "Notes on points of the scene, by name.");
     v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}},
                "Saved cameras, by name.");
     v.writable("sections", &State::sections, SharedTable<Entries<SectionState>>{{{}, kMaxSections, "normal"}},

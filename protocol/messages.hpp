@@ -177,6 +177,13 @@ struct CameraOverlay {
     bool operator==(const CameraOverlay&) const = default;
 };
 
+/// Another view than the present one: the scene as a cue shows it, and a camera laid over that.
+struct OtherView {
+    CameraOverlay camera = {};
+    std::optional<std::string> cue = {};  ///< none: as things stand
+    bool operator==(const OtherView&) const = default;
+};
+
 struct RendererOverlay {
     std::optional<DrawMode> mode;
     std::optional<bool> wireframe, show_selection;

@@ -67,10 +67,16 @@ void describe(V& v, const EdgeSnapshotSent*) {
     v.required("client", &EdgeSnapshotSent::client, kName, "Who got it.");
 }
 template <class V>
+void describe(V& v, const OtherView*) {
+    v.optional("cue", &OtherView::cue, Text{100}, "The scene as this cue shows it.");
+    v.optional("camera", &OtherView::camera, kCameraOverlay, "Laid over the camera.");
+}
+template <class V>
 void describe(V& v, const EdgePicture*) {
     v.required("name", &EdgePicture::name, kName, "By which it is known.");
     v.required("width", &EdgePicture::width, Integer{0, 1 << 20}, "Pixels.");
     v.required("height", &EdgePicture::height, Integer{0, 1 << 20}, "Pixels.");
+    v.inlined(&EdgePicture::view);
 }
 
 template <class V>

@@ -153,6 +153,22 @@ tl::expected<State, Error> patched(const State& state, const State& starting, co
     return or_error([&] { return patched_or_throw(state, starting, patch); });
 }
 
+void sign_notes(const State& before, const Json& patch, const std::optional<std::string>& author,
+                State& next) {
+    const auto markers = patch.find("markers");
+    if (markers == patch.end() || !markers->is_object()) return;
+    const CameraState& camera = next.camera;
+    auto notes = *next.markers;
+    for (const auto& [name, given] : markers->items()) {
+        const auto note = notes.find(name);
+        if (note == notes.end() || before.markers->contains(name)) continue;
+        if (!given.contains("author")) note->second.author = author;
+        if (!given.contains("view"))
+            note->second.view = Marker::View{camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+    }
+    next.markers.set(std::move(notes));
+}
+
 tl::expected<Patch, Error> parse_patch(std::string_view text) {
     return or_error([&] {
         return Patch{std::make_shared<const Json>(read_object(parse_strictly(text), "patch")), {}};

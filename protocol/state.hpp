@@ -150,10 +150,21 @@ struct NodeOverride {
     bool operator==(const NodeOverride&) const = default;
 };
 
+/// A note on a point of the scene.
 struct Marker {
+    /// The camera that it was made from.
+    struct View {
+        glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
+        double fov = 40;
+        bool operator==(const View&) const = default;
+    };
     glm::dvec3 point{0};
     std::optional<std::int64_t> node;  ///< that it moves with; `point` is in that node's space then
     std::string text;
+    std::optional<std::string> author = {};  ///< by the name that others see
+    std::optional<std::int64_t> time = {};   ///< when it was made: milliseconds since 1970, UTC
+    std::optional<View> view = {};
+    bool done = false;
     bool operator==(const Marker&) const = default;
 };
 
@@ -346,6 +357,8 @@ inline constexpr std::size_t kMaxListedClients = 64;
 inline constexpr std::size_t kMaxNotices = 16;
 /// Most nodes that differ from the file; likewise in all cues together.
 inline constexpr std::size_t kMaxNodes = 10'000;
+/// The last millisecond of the year 9999, since 1970 in UTC.
+inline constexpr std::int64_t kLatestDate = 253'402'300'799'999;
 /// Coordinates of positions go so far either way: products of two stay finite.
 inline constexpr double kFarthest = 1e30;
 
@@ -354,6 +367,10 @@ inline constexpr double kFarthest = 1e30;
 /// `measures` and `cues` that are not there. Checks types, ranges and names of members; what needs the scene
 /// is the caller's.
 tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
+/// New markers of a patch that led from `before` to `next` get what it does not give of them: the author, and
+/// the camera of `next` as the view that they were made from.
+void sign_notes(const State& before, const nlohmann::json& patch, const std::optional<std::string>& author,
+                State& next);
 /// A patch from the text of a JSON object.
 tl::expected<Patch, Error> parse_patch(std::string_view text);
 

@@ -3,6 +3,7 @@ import { Store } from './base/store.js';
 import { language, preferredLanguage, setLanguage } from './base/texts.js';
 import { commandsBy } from './connection/commands.js';
 import { Connection, socketAddress } from './connection/connection.js';
+import { fetchFile } from './connection/files.js';
 import { Token, hello } from './connection/hello.js';
 import { Meter } from './connection/meter.js';
 import { Bar } from './panels/bar.js';
@@ -57,7 +58,10 @@ const stage = new Stage({ store, commands, connection, meter, hasToken: token.in
 const offer = (text, label, act) => stage.offer(text, label, act);
 const nextTap = (text, signal) => stage.nextTap(text, signal);
 const { snapping, turnPointing } = stage;
-const menu = new Menu({ store, commands, meter, report, offer, nextTap, snapping, turnPointing, present: () => bar.present(), setLanguage: speak });
+const menu = new Menu({
+  store, commands, meter, report, offer, nextTap, snapping, turnPointing, present: () => bar.present(), setLanguage: speak,
+  fetchFile: (name) => fetchFile(name, token.value),
+});
 const bar = new Bar({ store, commands, menu, report, offer, turnPointing });
 
 store.subscribe(({ role }) => [role === 'control'], (wanted) => Object.assign(awake, { wanted }));

@@ -376,10 +376,11 @@ void Engine::handle(const SnapshotSent& sent) {
 
 void Engine::handle(const PictureAsked& asked) {
     const PictureSize present = present_size();
-    room::PictureOrder order = room_->order(asked.width > 0 ? asked.width : present.width,
-                                            asked.height > 0 ? asked.height : present.height);
-    order.client = asked.name;
-    snapshots_.push_back({std::move(order)});
+    auto order = room_->order(asked.width > 0 ? asked.width : present.width,
+                              asked.height > 0 ? asked.height : present.height, asked.view);
+    if (!order) return reject(asked.name, {}, order.error().message);
+    order->client = asked.name;
+    snapshots_.push_back({*std::move(order)});
 }
 
 void Engine::handle(const scenes::SceneLoading& loading) {

@@ -78,10 +78,11 @@ struct SnapshotSent {
     std::string client;
 };
 
-/// Somebody who is no client wants the present picture.
+/// Somebody who is no client wants a picture.
 struct PictureAsked {
-    std::string name;           ///< that the picture shall have as its `client`
-    int width = 0, height = 0;  ///< 0: the view's
+    std::string name;               ///< that the picture shall have as its `client`
+    int width = 0, height = 0;      ///< 0: the view's
+    protocol::OtherView view = {};  ///< of another view than the present one
 };
 
 /// Another server draws the room: what it did, which is done here likewise, until TakeOver.

@@ -153,7 +153,7 @@ void RemoteRoom::say_wanted(const engine::FramesWanted& wanted) {
 void RemoteRoom::handle(const engine::SnapshotSent& sent) { say(protocol::EdgeSnapshotSent{sent.client}); }
 
 void RemoteRoom::handle(const engine::PictureAsked& asked) {
-    const protocol::EdgePicture picture{asked.name, asked.width, asked.height};
+    const protocol::EdgePicture picture{asked.name, asked.width, asked.height, asked.view};
     pictures_[asked.name] = {picture, base::Clock::now() + kPicturePatience};
     say(picture);
 }

@@ -370,7 +370,7 @@ void RoomOwner::handle(const std::string& edge, const protocol::EdgeSnapshotSent
 
 void RoomOwner::handle(const std::string& edge, const protocol::EdgePicture& picture) {
     if (is_of_edge(picture.name, edge))
-        engine_->push(engine::PictureAsked{picture.name, picture.width, picture.height});
+        engine_->push(engine::PictureAsked{picture.name, picture.width, picture.height, picture.view});
 }
 
 }  // namespace vrut::server::nats

@@ -1,5 +1,6 @@
 #include "net/http_connection.hpp"
 
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <boost/asio/steady_timer.hpp>
@@ -17,6 +18,7 @@
 #include "net/http_response.hpp"
 #include "net/monitoring.hpp"
 #include "net/page_response.hpp"
+#include "net/report_drawing.hpp"
 #include "observe/log.hpp"
 #include "room_relay.hpp"
 
@@ -299,18 +301,22 @@ private:
         if (room && path == "/ws" && beast::websocket::is_upgrade(request) &&
             view(request[http::field::sec_websocket_version]) == "13")
             return open_websocket(request, *room);
-        if (room && path == "/frame.jpg") return admit_to_picture(request, *room);
+        if (room && path == "/frame.jpg") return admit(request, *room, &HttpConnection::send_picture);
+        if (room && path == "/report.html") return admit(request, *room, &HttpConnection::send_report);
+        if (room && path == "/report.csv") return admit(request, *room, &HttpConnection::send_table);
         send(respond(request, registry_));
     }
 
-    void admit_to_picture(const HttpRequest& request, const std::string& name) {
+    /// `answer` gets the request of who may see the room.
+    void admit(const HttpRequest& request, const std::string& name,
+               void (HttpConnection::*answer)(const HttpRequest&)) {
         room_ = find_room(name, registry_);
         if (!room_) return send(no_room());
         deadline_ = base::Clock::time_point::max();  // the room's server has one of its own
         room_->admit({{}, protocol::Role::view, token_of(request)},
-                     [self = shared_from_this(), kept = std::make_shared<const HttpRequest>(request)](
+                     [self = shared_from_this(), answer, kept = std::make_shared<const HttpRequest>(request)](
                          const tl::expected<protocol::Role, protocol::Error>& role) {
-                         if (role) return self->send_picture(*kept);
+                         if (role) return (*self.*answer)(*kept);
                          if (role.error().code == protocol::error_code::not_allowed)
                              return self->send(needs_token());
                          self->send(rejection(http::status::service_unavailable, role.error().message));
@@ -355,6 +361,65 @@ private:
               "ETag: " + room_->pictures.tag(picture.key) + "\r\n"});
     }
 
+    // --- reports
+
+    static constexpr std::size_t kMostReports = 2;
+
+    /// What a report has of the state; none: the request is rejected.
+    std::optional<protocol::ReportedState> reported() {
+        const auto document = room_->document.newest();
+        if (!document) {
+            send(rejection(http::status::service_unavailable, "there is no scene yet: try again later"));
+            return std::nullopt;
+        }
+        auto state = protocol::reported_state(*document);
+        if (state) return *std::move(state);
+        observe::log_warning("report_failed", {{"reason", state.error().message}});
+        send(rejection(http::status::service_unavailable,
+                       "there is no report of this scene: the log says why"));
+        return std::nullopt;
+    }
+
+    /// Browsers keep it as a file: texts of users are no page of this server.
+    static HttpResponse file_response(std::string_view content_type, const char* name) {
+        HttpResponse response{http::status::ok, content_type};
+        response.fields = "Content-Disposition: attachment; filename=\"" + std::string(name) + "\"\r\n";
+        response.cache_control = "no-store";
+        return response;
+    }
+
+    void send_table(const HttpRequest&) {
+        const auto state = reported();
+        if (!state) return;
+        HttpResponse response = file_response("text/csv; charset=utf-8", "report.csv");
+        response.body = std::make_shared<const std::string>(report::csv(*state));
+        send(std::move(response));
+    }
+
+    void send_report(const HttpRequest&) {
+        auto state = reported();
+        if (!state) return;
+        HttpResponse response = file_response("text/html; charset=utf-8", "report.html");
+        if (head_only_) return send(std::move(response));
+        if (registry_.reports >= kMostReports)
+            return send(rejection(http::status::service_unavailable,
+                                  "too many reports are being made: try again later"));
+        deadline_ = base::Clock::time_point::max();  // it takes as long as it takes
+        draw_report(
+            *std::move(state), room_, registry_.reports,
+            [self = shared_from_this()] { return !self->is_gone(); },
+            [self = shared_from_this(), response = std::move(response)](std::string html) mutable {
+                response.body = std::make_shared<const std::string>(std::move(html));
+                self->send(std::move(response));
+            });
+    }
+
+    /// The peer has closed, or the server stops.
+    bool is_gone() {
+        pollfd peer{tcp().native_handle(), POLLRDHUP, 0};
+        return registry_.stopping || ::poll(&peer, 1, 0) != 0;
+    }
+
     void open_websocket(const HttpRequest& request, const std::string& name) {
         if (!speaks_our_subprotocol(request))
             return send(
@@ -379,7 +444,7 @@ private:
         head_ = head_of(response, host_, keep_alive_);
         body_ = head_only_ ? nullptr : std::move(response.body);
         head_only_ = false;
-        expire_after(registry_.deadlines.answer);
+        expire_after(registry_.deadlines.answer + time_for(body_ ? body_->size() : 0));
         const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_),
                                                         body_ ? asio::buffer(*body_) : asio::const_buffer()};
         asio::async_write(
@@ -403,6 +468,12 @@ private:
     }
 
     // --- deadlines
+
+    /// What a large answer takes beyond what any may.
+    static base::Clock::duration time_for(std::size_t bytes) {
+        constexpr std::size_t kAtOnce = std::size_t{1} << 20, kBytesPerMs = 100;
+        return std::chrono::milliseconds((std::max(bytes, kAtOnce) - kAtOnce) / kBytesPerMs);
+    }
 
     void expire_after(base::Clock::duration time) { deadline_ = base::Clock::now() + time; }
 

@@ -47,7 +47,18 @@ bool ViewPictures::ask(const ViewPictureKey& key, Done done, engine::RoomEngine&
     return true;
 }
 
+void ViewPictures::draw(const protocol::OtherView& view, engine::PictureSize size, Drawn done,
+                        engine::RoomEngine& engine, const std::string& suffix) {
+    const std::string name = "picture " + std::to_string(next_++) + suffix;
+    others_[name] = std::move(done);
+    engine.push(engine::PictureAsked{name, size.width, size.height, view});
+}
+
 bool ViewPictures::take(const engine::EncodedPicture& picture) {
+    if (auto other = others_.extract(picture.client)) {
+        other.mapped()(std::make_shared<const std::string>(picture.file.begin(), picture.file.end()));
+        return true;
+    }
     auto drawing = waiting_.extract(picture.client);
     if (!drawing) return false;
     ViewPictureKey key = drawing.mapped().key;
@@ -59,6 +70,7 @@ bool ViewPictures::take(const engine::EncodedPicture& picture) {
 }
 
 void ViewPictures::give_up(const std::string& name) {
+    if (auto other = others_.extract(name)) return other.mapped()(nullptr);
     const auto drawing = waiting_.extract(name);
     if (!drawing) return;
     for (const Done& done : drawing.mapped().waiting) done(nullptr);

@@ -43,13 +43,21 @@ public:
     /// Asks the engine for an image of this revision or a newer one, and calls `done` with it. False if
     /// kMostWaiting are being drawn. `suffix`: of its name there.
     bool ask(const ViewPictureKey& key, Done done, engine::RoomEngine& engine, const std::string& suffix);
+    /// A JPEG file without a header; null: it cannot be drawn.
+    using Drawn = std::function<void(std::shared_ptr<const std::string>)>;
+    /// Asks for an image of another view, which is not kept. Who calls this bounds how many are being drawn.
+    void draw(const protocol::OtherView& view, engine::PictureSize size, Drawn done,
+              engine::RoomEngine& engine, const std::string& suffix);
     /// False where `picture` is none that was asked for here.
     bool take(const engine::EncodedPicture& picture);
     /// The picture that was asked for by this name cannot be drawn.
     void give_up(const std::string& name);
     void forget_before(std::int64_t revision);
     /// Forgets those who wait.
-    void stop() { waiting_.clear(); }
+    void stop() {
+        waiting_.clear();
+        others_.clear();
+    }
 
 private:
     struct Drawing {
@@ -60,6 +68,7 @@ private:
 
     std::string run_ = std::to_string(std::random_device{}());
     std::map<std::string, Drawing> waiting_;  ///< by the picture's `client`
+    std::map<std::string, Drawn> others_;     ///< likewise, of other views
     std::int64_t next_ = 1;
     std::vector<ViewPicture> kept_;  ///< oldest first
 };

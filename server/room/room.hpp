@@ -164,8 +164,10 @@ public:
     protocol::Checked check_cues(const nlohmann::json& list) const;
     /// The same of the file's text.
     protocol::Checked check_cues(const std::string& text) const;
-    /// The present view in another size, for whoever is no client.
-    PictureOrder order(int width, int height);
+    /// What is to be seen in another size, for whoever is no client: the present view, or one laid over it,
+    /// or what is wrong with that.
+    tl::expected<PictureOrder, protocol::Error> order(int width, int height,
+                                                      const protocol::OtherView& other = {});
 
 private:
     struct Client {
@@ -231,6 +233,15 @@ private:
     void apply(const Received& received, const protocol::Shown& shown);
     void apply(const Received& received, const protocol::Share& share);
     void apply(const Received& received, const protocol::Point& point);
+
+    /// A state and the scene as they would stand.
+    struct Laid {
+        protocol::State state;
+        std::shared_ptr<const scene::PlacedScene> placed;
+    };
+    /// With a cue and a camera laid over what is shown.
+    tl::expected<Laid, protocol::Error> laid(const protocol::OtherView& other);
+    plan::View view_of_laid(const Laid& laid) const;
 
     /// Does what a message does; whether it was accepted.
     template <class Apply>
@@ -368,6 +379,10 @@ private:
                                               const protocol::NamedCameraMembers& named);
     std::optional<protocol::Error> use_views(protocol::State& next, const scene::PlacedScene& placed) const;
     std::optional<protocol::Error> check_names(const protocol::State& next) const;
+
+    // --- notes
+    /// Brings the views of changed notes in line with the scene, or what is wrong with them.
+    std::optional<protocol::Error> use_notes(protocol::State& next, const scene::PlacedScene& placed) const;
 
     // --- cues
     /// The name of the cue that a message names; none: the message is rejected.

@@ -26,6 +26,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     const protocol::NamedCameraMembers named = protocol::named_camera_members(*patch.patch);
     if (!error) error = use_camera(*next, *placed, named);
     if (!error) error = use_views(*next, *placed);
+    if (!error) error = use_notes(*next, *placed);
     if (!error) error = check_names(*next);
     if (!error) error = check_measures(*next);
     if (!error) error = use_cues(*next);
@@ -39,6 +40,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
     next->control = state_.control;
+    protocol::sign_notes(state_, *patch.patch, shown_name(received.client), *next);
     keep_shown_cue(*next);
     end_swings_of(*next);
     state_ = *std::move(next);
@@ -63,6 +65,7 @@ std::optional<Error> Room::use_changes() {
     std::shared_ptr<const scene::PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
     if (!error) error = use_views(*next, *placed);
+    if (!error) error = use_notes(*next, *placed);
     if (!error) error = check_names(*next);
     if (!error) error = check_measures(*next);
     if (!error) error = use_cues(*next);

@@ -65,36 +65,46 @@ void Room::apply(const Received& received, const protocol::Fly& fly) {
 
 // --- pictures and the tree
 
-void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
-    protocol::State state = state_;
-    std::shared_ptr<const scene::PlacedScene> placed = scene_;
-    if (snapshot.cue) {
-        const auto cue = state_.cues->find(*snapshot.cue);
+tl::expected<Room::Laid, Error> Room::laid(const protocol::OtherView& other) {
+    Laid laid{state_, scene_};
+    if (other.cue) {
+        const auto cue = state_.cues->find(*other.cue);
         if (cue == state_.cues->end())
-            return reject(received, code::unknown_cue, "there is no cue '" + *snapshot.cue + "'");
-        lay_cue(cue->second, state);
-        if (const auto error = use_nodes(state, placed))
-            return reject(received, error->code.c_str(), error->message);
-        state.camera = state_of(camera_of(cue->second), placed->bounds);
+            return tl::unexpected(Error{{}, code::unknown_cue, "there is no cue '" + *other.cue + "'"});
+        lay_cue(cue->second, laid.state);
+        if (auto error = use_nodes(laid.state, laid.placed)) return tl::unexpected(*std::move(error));
+        laid.state.camera = state_of(camera_of(cue->second), laid.placed->bounds);
     }
-    auto laid = overlaid(camera_of(state.camera), snapshot.camera, *placed, "camera");
+    const scene::Camera camera = camera_of(laid.state.camera);
+    const auto moved = overlaid(camera, other.camera, *laid.placed, "camera");
+    if (!moved) return tl::unexpected(moved.error());
+    if (*moved != camera) laid.state.camera = state_of(*moved, laid.placed->bounds);
+    return laid;
+}
+
+plan::View Room::view_of_laid(const Laid& laid) const {
+    plan::View view = view_of(laid.state, laid.placed);
+    view.markers = visible_.markers;
+    if (laid.placed != scene_)
+        view.markers = std::make_shared<const std::vector<plan::PlacedMarker>>(
+            markers_of(*state_.markers, *laid.placed));
+    return view;
+}
+
+void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
+    auto laid = this->laid({snapshot.camera, snapshot.cue});
     if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);
-    if (*laid != camera_of(state.camera)) state.camera = state_of(*laid, placed->bounds);
-    protocol::RendererState& renderer = state.renderer;
+    protocol::RendererState& renderer = laid->state.renderer;
     renderer.mode = snapshot.renderer.mode.value_or(renderer.mode);
     renderer.wireframe = snapshot.renderer.wireframe.value_or(renderer.wireframe);
     renderer.show_selection = snapshot.renderer.show_selection.value_or(renderer.show_selection);
     accepted_ = true;
     if (!received.message.id) return;  // nobody could tell the picture from a frame
-    plan::View view = view_of(state, placed);
-    view.markers = visible_.markers;
-    if (placed != scene_)
-        view.markers =
-            std::make_shared<const std::vector<plan::PlacedMarker>>(markers_of(*state_.markers, *placed));
+    plan::View view = view_of_laid(*laid);
     view.width = snapshot.width;
     view.height = snapshot.height;
     PictureOrder order{
-        received.client, view, header_of(state, view, view_size_), snapshot.format, snapshot.jpeg_quality,
+        received.client, view, header_of(laid->state, view, view_size_), snapshot.format, snapshot.jpeg_quality,
         snapshot.samples};
     order.header.revision = document()->revision();
     order.header.snapshot = received.message.id;
@@ -102,11 +112,13 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     orders_.push_back(std::move(order));
 }
 
-PictureOrder Room::order(int width, int height) {
-    plan::View view = visible_;
+tl::expected<PictureOrder, Error> Room::order(int width, int height, const protocol::OtherView& other) {
+    const auto laid = this->laid(other);
+    if (!laid) return tl::unexpected(laid.error());
+    plan::View view = view_of_laid(*laid);
     view.width = width;
     view.height = height;
-    PictureOrder order{{}, view, header_of(state_, view, view_size_)};
+    PictureOrder order{{}, view, header_of(laid->state, view, view_size_)};
     order.header.revision = document()->revision();
     return order;
 }

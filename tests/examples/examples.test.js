@@ -159,6 +159,7 @@ test('each script tells its usage', async () => {
   assert.match(await succeeds(python('gaps.py', '--help')), /--second/);
   assert.match(await succeeds(python('show_cues.py', '--help')), /--hold/);
   assert.match(await succeeds(python('point.py', '--help')), /--seconds/);
+  assert.match(await succeeds(python('notes.py', '--help')), /--report/);
   assert.match(await succeeds(snapshot('--help')), /--camera/);
   assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
   assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
@@ -168,7 +169,7 @@ test('each script tells its usage', async () => {
 });
 
 test('a wrong token is told in a sentence', async () => {
-  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []], ['gaps.py', []], ['show_cues.py', []], ['point.py', []]]) {
+  for (const [script, args] of [['orbit.py', []], ['door.py', []], ['sweep.py', []], ['gaps.py', []], ['show_cues.py', []], ['point.py', []], ['notes.py', []]]) {
     const result = await python(script, ...args, '--token', 'guess');
     assert.equal(result.status, 1);
     assert.equal(result.stderr, `${script}: the token is wrong\n`);
@@ -210,6 +211,28 @@ test('point.py points everybody to the car, and takes the point away again', asy
   await watcher.until(() => watcher.pointed.length >= 2 && !watcher.pointed.at(-1).point);
   const seen = watcher.pointed.filter(({ name }) => name === 'point.py');
   assert.deepEqual(seen.slice(0, 1).map(({ point }) => point.map((x) => Number(x.toFixed(4)))), points.slice(0, 1));
+});
+
+test('notes.py lists notes, marks one as done, and saves the report and the table', async () => {
+  const patch = (markers) => {
+    watcher.send({ type: 'control', action: 'take' });
+    watcher.send({ type: 'patch', patch: { markers } });
+  };
+  patch({ gap: { point: [1, 2, 3], text: 'Gap too wide', author: 'Bea', time: 1764345600000 }, old: { point: [0, 0, 0], text: 'Dent', author: null, view: null } });
+  await watcher.until(() => watcher.state.markers.gap);
+  assert.match(await succeeds(python('notes.py')), /^open\told\tDent\t\t\nopen\tgap\tGap too wide\tBea\t2025-11-28 \d\d:\d\d\n$/);
+  const printed = await succeeds(python('notes.py', '--done', 'Gap too wide', '--report', file('report.html')));
+  assert.match(printed, /\ndone\tgap\t/);
+  await watcher.until(() => watcher.state.markers.gap?.done);
+  const html = fs.readFileSync(file('report.html'), 'utf8');
+  assert.ok(html.includes('Gap too wide') && html.includes('src="data:image/jpeg;base64,/9j/'));
+  await succeeds(python('notes.py', '--report', file('report.csv')));
+  assert.match(fs.readFileSync(file('report.csv'), 'utf8'), /\r\ngap,Gap too wide,Bea,2025-11-28T16:00:00Z,true,1,2,3,\r\n/);
+  const unknown = await python('notes.py', '--done', 'Nose');
+  assert.equal(unknown.stderr, "notes.py: there is no note 'Nose'; without options the script lists them\n");
+  assert.equal((await python('notes.py', '--report', 'x.pdf')).status, 2);
+  patch(null);
+  await watcher.until(() => !watcher.state.markers.gap);
 });
 
 test('show_cues.py shows a list, saves a picture of each cue, and takes the list away again', async () => {

@@ -69,8 +69,9 @@ struct Servers {
 // --- routes
 
 const std::vector<std::string> kPublic{"/", "/app.js", "/healthz"};
-const std::vector<std::string> kGuarded{"/readyz", "/metrics", "/protocol.schema.json",
-                                        "/frame.jpg?width=16&height=16"};
+const std::vector<std::string> kGuarded{
+    "/readyz",      "/metrics",   "/protocol.schema.json", "/frame.jpg?width=16&height=16",
+    "/report.html", "/report.csv"};
 
 int expected_status(const std::string& route, const TokenState& state, bool good_origin) {
     if (!good_origin) return 403;

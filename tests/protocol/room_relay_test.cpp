@@ -54,6 +54,9 @@ TEST_CASE("what an edge says reads back the same") {
     CHECK(wanted.round_trip_ms == 0.25);
     CHECK(round_trip(EdgeAdmission{3, Role::host, "t"}).number == 3);
     CHECK(round_trip(EdgePicture{"p", 0, 9}).height == 9);
+    const OtherView other{{{}, glm::dvec3(1, 2, 3), {}, {}, {}, 20}, "Arrival"};
+    CHECK(round_trip(EdgePicture{"p", 0, 9, other}).view == other);
+    CHECK(round_trip(EdgePicture{"p", 0, 9}).view == OtherView{});
     CHECK(round_trip(EdgeLeft{"c1.e1"}).client == "c1.e1");
     CHECK(round_trip(EdgeSnapshotSent{"c1.e1"}).client == "c1.e1");
     round_trip(EdgeAlive{});

@@ -125,7 +125,8 @@ TEST_CASE("what is patched has the value that was given") {
         "selection": {"node": 5},
         "nodes": {"5": {"active": false, "activeChild": -1, "matrix": [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16],
                         "material": 3}},
-        "markers": {"Scratch": {"point": [1,2,3], "node": 5, "text": "here"}},
+        "markers": {"Scratch": {"point": [1,2,3], "node": 5, "text": "here", "author": "Bea", "time": 7, "done": true,
+                    "view": {"eye": [5,0,0], "focus": [1,0,0], "up": [0,0,1], "center": [2,0,0], "fov": 60}}},
         "views": {"side": {"eye": [5,0,0], "focus": [1,0,0], "up": [0,0,1], "center": [2,0,0], "fov": 60, "order": -1.5}},
         "sections": {"cut": {"normal": [0,0,-2], "distance": 1.5, "on": false, "caps": false, "hatched": true}},
         "sectionBox": {"min": [-1,-2,-3], "max": [1,2,3], "on": true, "caps": false, "hatched": true},
@@ -149,7 +150,8 @@ TEST_CASE("what is patched has the value that was given") {
     // Row by row: the second number is in the first row's second column.
     const glm::dmat4 matrix{{1, 5, 9, 13}, {2, 6, 10, 14}, {3, 7, 11, 15}, {4, 8, 12, 16}};
     expected.nodes.set("5", {false, -1, matrix, 3});
-    expected.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
+    const Marker::View view{{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60};
+    expected.markers.set("Scratch", {{1, 2, 3}, 5, "here", "Bea", 7, view, true});
     expected.views.set("side", {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60, -1.5});
     expected.sections.set("cut", {{0, 0, -1}, 1.5, false, false, true});
     expected.section_box = {{-1, -2, -3}, {1, 2, 3}, true, false, true};
@@ -222,6 +224,13 @@ const std::vector<Member> kMembersOfSections = {
     {"/markers/here/point", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
     {"/markers/here/node", {"0", "9007199254740991"}, kNoNumber, kNoId},
     {"/markers/here/text", {"\"\"", "\"Žluťoučký kůň\""}, kNoText, {}},
+    {"/markers/here/author", {"\"\"", "\"Jiří\""}, kNoText, {}},
+    {"/markers/here/time", {"0", "253402300799999"}, kNoNumber, {"-1", "0.5", "253402300800000"}},
+    {"/markers/here/view",
+     {R"({"eye":[1e30,0,0],"focus":[0,0,0],"up":[0,1,0],"center":[0,0,0],"fov":170})"},
+     {"5", "true", "\"x\"", "[]"},
+     {}},
+    {"/markers/here/done", {"true", "false"}, kNoFlag, {}},
     {"/views/home/eye", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
     {"/views/home/focus", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
     {"/views/home/up", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
@@ -378,7 +387,8 @@ TEST_CASE("the state has the members that are tested here, and no others") {
     std::function<void(const json&)> count = [&](const json& properties) {
         for (const json& property : properties) {
             const json& value = property["anyOf"][1];
-            if (value.contains("properties"))
+            const bool is_whole = value.contains("required");  // a list of members, given all at once
+            if (value.contains("properties") && !is_whole)
                 count(value["properties"]);
             else if (value.contains("additionalProperties"))
                 count(value["additionalProperties"]["anyOf"][1]["properties"]);
@@ -523,6 +533,11 @@ TEST_CASE("markers are added, changed and removed") {
     CHECK(state.markers->size() == 1);
     CHECK(after(state, R"({"markers":null})").markers->empty());
     check_refused(json::parse(R"({"markers":{"new":{}}})"), "bad-message", "'markers.new.point'");
+    json view = {
+        {"eye", {0, 0, 9}}, {"focus", {0, 0, 0}}, {"up", {0, 1, 0}}, {"center", {0, 0, 0}}, {"fov", 171}};
+    check_refused(patch_at("/markers/here/view", view), "out-of-range", "'markers.here.view.fov'");
+    view.erase("fov");
+    check_refused(patch_at("/markers/here/view", view), "bad-message", "'markers.here.view.fov'");
     check_refused(json::parse(R"({"markers":{"new":{"text":"x"}}})"), "bad-message", "'markers.new.point'");
     // One that is gone is new again.
     CHECK_FALSE(patched(state, start(), json::parse(R"({"markers":{"a":{"text":"x"}}})")).has_value());

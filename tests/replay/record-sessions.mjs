@@ -41,11 +41,11 @@ class Participant {
     this.dice = dice(7);
   }
 
-  static async join(session, role = 'control', view = undefined) {
+  static async join(session, role = 'control', view = undefined, named = {}) {
     const participant = new Participant(await ContractClient.connect(session.server));
     session.participants.push(participant);
     const { client } = participant;
-    client.send({ type: 'hello', role }, { id: null });
+    client.send({ type: 'hello', role, ...named }, { id: null });
     await client.until('state', () => client.state);
     if (view) await client.ask({ type: 'resize', ...view });
     return participant;
@@ -386,6 +386,23 @@ const SESSIONS = {
     await user.ask({ type: 'patch', patch: { camera: { eye: camera.eye, focus: camera.focus } } });
     await rest();
     user.walls = wallsSeen(host);
+    return user;
+  },
+
+  notes: async (session, name) => {
+    const user = await Participant.join(session, 'control', VIEW, { name: 'Bea' });
+    user.watch();
+    await user.record(name);
+    const note = (markers) => user.ask({ type: 'patch', patch: { markers } });
+    await note({ Gap: { point: [0.6, 0.9, 0], text: 'Gap too wide', time: 1764345600000 } });
+    await user.drag([200, 125], [262, 141], 12);
+    await note({ Dent: { node: 4, point: [0, 0, 0], text: 'Dent', author: 'Ada' }, Old: { point: [0, 0, 0], author: null, view: null } });
+    await note({ Gap: { done: true }, Dent: { text: 'Dent in the door' }, Old: null });
+    const { view } = user.state.markers.Gap;
+    const id = user.client.send({ type: 'fly', keyframes: [{ at: 300, camera: view }] });
+    await user.client.until('the end', () => user.client.texts.find((text) => text.type === 'flown' && text.id === id));
+    assert.deepEqual(user.state.camera.eye, view.eye);
+    assert.deepEqual([user.state.markers.Gap.author, user.state.markers.Dent.author], ['Bea', 'Ada']);
     return user;
   },
 

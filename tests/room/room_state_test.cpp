@@ -824,7 +824,8 @@ TEST_CASE("what is fitted avoids what covers the view, and home does once") {
     resize(300);  // nothing useful is left
     stage.say("a", R"({"type":"fit"})");
     CHECK(middle() == doctest::Approx(whole));
-    CHECK_FALSE(json::parse(protocol::encode(stage.room.order(10, 10).header))["view"].contains("inset"));
+    CHECK_FALSE(
+        json::parse(protocol::encode(stage.room.order(10, 10).value().header))["view"].contains("inset"));
 }
 
 TEST_CASE("drags look around from the seat that the scene marks") {

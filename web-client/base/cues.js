@@ -36,6 +36,11 @@ export function lookOf(cue) {
   return JSON.stringify(LOOKS.map((member) => cue[member]));
 }
 
+/** What a picture of a cue shows; undefined where there is none. @param {Cues} cues @param {string} name */
+export function pictureOfCue(cues, name) {
+  return cues[name] && { look: lookOf(cues[name]), request: { cue: name } };
+}
+
 /**
  * The file of a list of cues.
  *

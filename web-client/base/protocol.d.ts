@@ -1326,14 +1326,33 @@ export type StateDocument = {
       type: string;
     }>;
   };
-  /** Signs in the scene, by name. */
+  /** Notes on points of the scene, by name. */
   markers: Record<string, {
+    /** Who made it. Of a new marker without one: the client's name, if it has one. */
+    author?: string;
+    /** What it asks for is done. */
+    done: boolean;
     /** The marker moves with this node. */
     node?: number;
     /** In the world, or in the space of `node`. A new marker must have it. */
     point: Array<number>;
     /** For clients to show; a frame has the sign only. */
     text: string;
+    /** When it was made, in milliseconds since 1970 in UTC, by the clock of its client. */
+    time?: number;
+    /** The camera that it was made from. Of a new marker without one: the present camera. */
+    view?: {
+      /** The centre of rotation. */
+      center: Array<number>;
+      /** Where the camera stands. */
+      eye: Array<number>;
+      /** What it looks at. */
+      focus: Array<number>;
+      /** The vertical angle of view in degrees. */
+      fov: number;
+      /** Which way is up in the image; unit, at right angles to the view. */
+      up: Array<number>;
+    };
   }>;
   /** Materials, by id. */
   materials: Record<string, {
@@ -1616,9 +1635,24 @@ export type StatePatch = {
     }>;
   };
   markers?: null | Record<string, null | {
+    author?: null | string;
+    done?: null | boolean;
     node?: null | number;
     point?: null | Array<number>;
     text?: null | string;
+    time?: null | number;
+    view?: null | {
+      /** The centre of rotation. */
+      center: Array<number>;
+      /** Where the camera stands. */
+      eye: Array<number>;
+      /** What it looks at. */
+      focus: Array<number>;
+      /** The vertical angle of view in degrees. */
+      fov: number;
+      /** Which way is up in the image; unit, at right angles to the view. */
+      up: Array<number>;
+    };
   }>;
   measures?: null | Record<string, null | {
     kind?: null | 'distance' | 'parallel' | 'angle' | 'radius' | 'length';

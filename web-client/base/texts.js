@@ -66,6 +66,11 @@ export function written(value, digits = 0, unit = '') {
   return unit ? `${number}\u00a0${unit}` : number;
 }
 
+/** A moment, in milliseconds since 1970, as the language and the user's clock write it. @param {number} ms */
+export function writtenTime(ms) {
+  return new Intl.DateTimeFormat(current, { dateStyle: 'medium', timeStyle: 'short' }).format(ms);
+}
+
 /**
  * How people call a client: by the name that it gave in `hello`, or else by its id.
  *

@@ -47,7 +47,7 @@ export function commandsBy({ ask, refused }) {
     /** What of a list of cues does not go with the scene. @param {object} cues @returns {Promise<ServerChecked|undefined>} */
     check: (cues) => tell({ type: 'check', cues }),
     /** Nothing where it cannot be drawn. @param {Omit<ClientSnapshot, 'type'>} picture */
-    cuePicture: (picture) => ask({ type: 'snapshot', ...picture }).catch(() => undefined),
+    picture: (picture) => ask({ type: 'snapshot', ...picture }).catch(() => undefined),
     /** @param {'start'|'stop'} action */
     record: (action) => tell({ type: 'record', action }),
     scenes: () => tell({ type: 'scenes' }),

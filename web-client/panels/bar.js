@@ -1,9 +1,10 @@
+import { pictureOfCue } from '../base/cues.js';
 import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
 import { rows, toggle } from './controls.js';
-import { CuePictures } from './cue-pictures.js';
 import { cueStrip } from './cue-strip.js';
+import { Pictures } from './pictures.js';
 import { pointButton } from './pointing.js';
 import { Presentation } from './presentation.js';
 import { stateOf } from './section.js';
@@ -51,7 +52,7 @@ export class Bar {
   constructor({ store, commands, menu, report, offer, turnPointing }) {
     this.#turnPointing = turnPointing;
     this.#presentation = new Presentation({ store, commands, report, offer });
-    this.#pictures = new CuePictures({ store, commands });
+    this.#pictures = new Pictures({ store, commands, find: ({ cues }, name) => pictureOfCue(cues, name) });
     this.#store = store;
     this.#commands = commands;
     this.#menu = menu;

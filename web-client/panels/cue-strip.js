@@ -7,7 +7,7 @@ import { stateOf } from './section.js';
 /**
  * @import { Store } from '../base/store.js'
  * @import { Commands } from '../connection/commands.js'
- * @import { CuePictures } from './cue-pictures.js'
+ * @import { Pictures } from './pictures.js'
  * @import { Presentation } from './presentation.js'
  */
 
@@ -15,7 +15,7 @@ import { stateOf } from './section.js';
  * What a presenter has before them: the words for the shown cue, the picture of the next one, and all of them in a row.
  * While they prepare, a tap chooses what this page alone shows until it is taken.
  *
- * @param {{store: Store, commands: Commands, pictures: CuePictures, presentation: Presentation}} page
+ * @param {{store: Store, commands: Commands, pictures: Pictures, presentation: Presentation}} page
  */
 export function cueStrip({ store, commands, pictures, presentation }) {
   const state = () => stateOf(store);

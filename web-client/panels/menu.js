@@ -3,6 +3,7 @@ import { language, say } from '../base/texts.js';
 import { cuesSection } from './cues-section.js';
 import { Dialogs } from './dialogs.js';
 import { measuresSection } from './measures-section.js';
+import { notesSection } from './notes-section.js';
 import { partsSection } from './parts-section.js';
 import { presentationSection } from './presentation-section.js';
 import { foldable } from './section.js';
@@ -102,7 +103,7 @@ export class Menu {
   /** Makes everything anew, in the language in force. */
   rebuild() {
     const page = this.#page;
-    this.#sections = [partsSection, viewsSection, cuesSection, sectionsSection, measuresSection, presentationSection].map((build) => build(page));
+    this.#sections = [partsSection, viewsSection, cuesSection, notesSection, sectionsSection, measuresSection, presentationSection].map((build) => build(page));
     this.#panel.ariaLabel = say('menu.title');
     this.#clean(this.#stage.classList.contains('clean'));
     const close = tool('close', say('menu.close'), () => this.close());

@@ -1,5 +1,6 @@
 import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
+import { asItWas } from '../base/notes.js';
 import { onChange } from '../base/store.js';
 import { holderName, say } from '../base/texts.js';
 import { gentleWalls } from './comfort.js';
@@ -157,8 +158,9 @@ export function isAsInFile({ views, markers, measures, cues, nodes }) {
  */
 export function backTo(before, now) {
   const all = (member) => ({ ...Object.fromEntries(Object.keys(now[member]).map((key) => [key, null])), ...before[member] });
+  const notes = Object.fromEntries(Object.entries(before.markers).map(([name, note]) => [name, asItWas(note)]));
   return {
-    views: all('views'), markers: all('markers'), measures: all('measures'), unit: before.unit, cues: all('cues'),
+    views: all('views'), markers: { ...all('markers'), ...notes }, measures: all('measures'), unit: before.unit, cues: all('cues'),
     nodes: all('nodes'),
   };
 }

@@ -6,23 +6,20 @@ import { byName, rows } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 
 /**
- * @import { FrameHeader, ServerPicked, StateDocument } from '../base/protocol.js'
+ * @import { ServerPicked, StateDocument } from '../base/protocol.js'
  * @import { Now } from '../base/store.js'
  * @import { Page, Section } from './section.js'
  */
 
 /**
- * Where to look from, and at what: saved views, cameras, markers.
+ * Where to look from: saved views and cameras.
  *
  * @param {Page} page
  * @returns {Section}
  */
 export function viewsSection({ commands, report, offer, store }) {
-  const page = {
-    ...commands, report, offer,
-    state: () => stateOf(store), header: () => store.now.header, inset: () => store.now.inset,
-  };
-  const parts = joined([savedViews, cameras, markers].map((part) => part(page)));
+  const page = { ...commands, report, offer, state: () => stateOf(store) };
+  const parts = joined([savedViews, cameras].map((part) => part(page)));
   const home = button(say('views.home'), () => commands.fly(page.state().views.home), { icon: 'home' });
   const fit = button('', () => commands.fit(page.state().selection.node), { icon: 'fit' });
   return {
@@ -128,43 +125,6 @@ export function cameraEntries(all, node) {
   return Object.entries(all).map(([id, { name }]) => [id, { text: name || `#${id}`, used: node === Number(id) }]);
 }
 
-function markers({ pick, patch, fly, change, report, state, header, inset }) {
-  const show = (name) => {
-    const { view, markers: places } = header();
-    return fly(lookingAt(state().camera, places[name], middleOf(view, inset()), view));
-  };
-  const list = places(say('markers.title'), say('markers.none'), show, (name) => change({ markers: { [name]: null } }));
-  const mark = async (text) => {
-    const { frame, view } = header() ?? {};
-    const picked = view && await pick({ ...middleOf(view, inset()), frame });
-    if (!picked) return false;
-    if (!picked.point) return report(new Error(say('markers.noPart')));
-    const name = unusedName('marker', Object.keys(state().markers));
-    return patch({ markers: { [name]: { ...placeOf(picked), text } } });
-  };
-  const entry = field(say('markers.text'), say('markers.add'), mark);
-  return {
-    content: [...list.content, entry.element],
-    // Where they are changes with each frame; here only which the frame has.
-    show: onChange(({ state, header: drawn }) => [state.markers, String(Object.keys(drawn?.markers ?? {}))], (all) => {
-      const entries = markerEntries(all, header()?.markers);
-      list.show(entries);
-      entry.show(unusedName(say('markers.newText'), entries.map(([, { text }]) => text)));
-    }),
-  };
-}
-
-/**
- * [name, item] of each marker; lost where `drawn`, those of the frame, does not have it.
- *
- * @param {StateDocument['markers']} all
- * @param {FrameHeader['markers']} drawn
- * @returns {[string, {text: string, lost: boolean}][]}
- */
-export function markerEntries(all, drawn) {
-  return Object.entries(all).map(([name, { text }]) => [name, { text: text || name, lost: !drawn?.[name] }]);
-}
-
 /**
  * A list of buttons that go there, with `remove` those that delete, and with `edit` those that unfold what it gives:
  * {content, show(item)}. Items are in their `order`, if they have one, and by name.
@@ -191,10 +151,10 @@ function places(title, none, go, remove, edit) {
     };
     unfold.ariaExpanded = 'false';
     const show = (item) => {
-      const { text, used, lost = false } = item;
+      const { text, used } = item;
       edited?.show(item);
       there.lastChild.data = text;
-      Object.assign(there, { ariaPressed: used, disabled: lost });
+      there.ariaPressed = used;
       away.ariaLabel = away.title = say('views.delete', { text });
       unfold.ariaLabel = unfold.title = say('views.edit', { text });
     };
@@ -218,7 +178,7 @@ export function field(label, action, add) {
 }
 
 /**
- * Where a marker is to be: if the server tells it, in the part's own space, to move with the part.
+ * Where a note is to be: if the server tells it, in the part's own space, to move with the part.
  *
  * @param {ServerPicked} picked
  */

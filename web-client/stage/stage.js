@@ -105,7 +105,7 @@ export class Stage {
       unheard: () => this.#preparation.isOn || this.#controlBar.offer(),
     });
     this.#preparation = new Preparation(find('prepare'), {
-      draw: commands.cuePicture,
+      draw: commands.picture,
       state: () => store.now.state,
       view: () => store.now.header?.view ?? { width: 16, height: 9, pixelRatio: 1 },
       mapping: () => this.#picture.mapping(),

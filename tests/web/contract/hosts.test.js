@@ -151,7 +151,7 @@ describe('markers and views, as all see them', () => {
     const client = await steering(t, server);
     await client.frame((header) => header.quality.level === 'still');
     await client.patch({ markers: { Bolt: { point: [0, 0, 1], text: 'Bolt' } } });
-    assert.deepEqual(client.state.markers.Bolt, { point: [0, 0, 1], text: 'Bolt' });
+    assert.deepEqual([client.state.markers.Bolt.point, client.state.markers.Bolt.text], [[0, 0, 1], 'Bolt']);
     await client.patch({ markers: null });
     assert.deepEqual(client.state.markers, {});
   });

@@ -144,7 +144,7 @@ describe('with tokens', () => {  test('/, its files and /healthz are open', asyn
     assert.equal((await guarded.get('healthz', {})).status, 200);
   });
 
-  for (const route of ['frame.jpg?width=16&height=16', 'readyz', 'metrics', 'protocol.schema.json']) {
+  for (const route of ['frame.jpg?width=16&height=16', 'report.html', 'report.csv', 'readyz', 'metrics', 'protocol.schema.json']) {
     test(`/${route} takes Authorization: Bearer`, async () => {
       for (const headers of [{}, { authorization: 'Bearer wrong' }, { authorization: `Basic ${tokens.view}` }, { authorization: tokens.view }]) {
         assert.equal((await guarded.get(route, headers)).status, 401, JSON.stringify(headers));

@@ -449,10 +449,12 @@ describe('nodes', () => {
 describe('markers', () => {
   test('are made, moved, tied to a node, and removed by null', async (t) => {
     const client = await holder(t, server);
+    const place = ({ point, node, text }) => (node === undefined ? { point, text } : { point, node, text });
     await client.patch({ markers: { Bolt: { point: [1, 2, 0.1 + 0.2], text: 'M6, 9 Nm' } } });
-    assert.deepEqual(client.state.markers, { Bolt: { point: [1, 2, 0.1 + 0.2], text: 'M6, 9 Nm' } });
+    assert.deepEqual(Object.keys(client.state.markers), ['Bolt']);
+    assert.deepEqual(place(client.state.markers.Bolt), { point: [1, 2, 0.1 + 0.2], text: 'M6, 9 Nm' });
     await client.patch({ markers: { Bolt: { node: 4, point: [0, 0, 0] }, Nut: { point: [0, 1, 0], text: '' } } });
-    assert.deepEqual(client.state.markers.Bolt, { point: [0, 0, 0], node: 4, text: 'M6, 9 Nm' });
+    assert.deepEqual(place(client.state.markers.Bolt), { point: [0, 0, 0], node: 4, text: 'M6, 9 Nm' });
     await client.patch({ markers: { Bolt: { node: null } } });
     assert.equal(client.state.markers.Bolt.node, undefined);
     await client.patch({ markers: { Bolt: null } });
@@ -471,6 +473,12 @@ describe('markers', () => {
     await refused({ point: [0, 0, 0], text: 7 }, 'bad-message');
     await refused({ point: [0, 0, 0], text: '', node: 999 }, 'unknown-node');
     await refused({ point: [0, 0, 0], text: '', node: '4' }, 'bad-message');
+    await refused({ point: [0, 0, 0], author: 7 }, 'bad-message');
+    await refused({ point: [0, 0, 0], author: 'x'.repeat(101) }, 'out-of-range');
+    await refused({ point: [0, 0, 0], time: -1 }, 'out-of-range');
+    await refused({ point: [0, 0, 0], done: 1 }, 'bad-message');
+    await refused({ point: [0, 0, 0], view: { fov: 40 } }, 'bad-message');
+    await refused({ point: [0, 0, 0], view: { ...POSE, eye: POSE.focus } }, 'out-of-range');
   });
 });
 

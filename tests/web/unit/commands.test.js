@@ -23,7 +23,7 @@ test('each command is a message of the protocol', async () => {
   await commands.snapshot({ width: 10, height: 20 });
   await commands.cue({ step: 1 });
   await commands.check({ format: 'vrut-preview-cues', version: 1, cues: {} });
-  await commands.cuePicture({ width: 10, height: 20, cue: 'Arrival' });
+  await commands.picture({ width: 10, height: 20, cue: 'Arrival' });
   await commands.record('start');
   await commands.scenes();
   await commands.share('https://preview.example/');

@@ -1,9 +1,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { LOOKS, asShown, cueAfter, cueList, cueNames, lookOf } from '../../../web-client/base/cues.js';
+import { LOOKS, asShown, cueAfter, cueList, cueNames, lookOf, pictureOfCue } from '../../../web-client/base/cues.js';
 import { moved, namesInOrder, unusedName } from '../../../web-client/base/order.js';
-import { CuePictures } from '../../../web-client/panels/cue-pictures.js';
 import { parts } from '../../../web-client/panels/cues-section.js';
+import { Pictures } from '../../../web-client/panels/pictures.js';
 
 const cues = { Last: {}, First: { order: -1 }, Then: { order: 2 }, Early: {} };
 
@@ -69,8 +69,8 @@ test('pictures are drawn one after the other, once for a look', async (t) => {
     header: { view: { width: 200, height: 100 } },
   };
   const asked = [];
-  const commands = { cuePicture: (wanted) => new Promise((resolve) => { asked.push({ wanted, resolve }); }) };
-  const pictures = new CuePictures({ store: { now }, commands });
+  const commands = { picture: (wanted) => new Promise((resolve) => { asked.push({ wanted, resolve }); }) };
+  const pictures = new Pictures({ store: { now }, commands, find: ({ cues: all }, name) => pictureOfCue(all, name) });
   const settled = () => new Promise(setImmediate);
   const [a, b, again] = [image(), image(), image()];
   pictures.show(a, 'A');

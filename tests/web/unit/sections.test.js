@@ -13,7 +13,7 @@ import {
 } from '../../../web-client/panels/presentation-section.js';
 import { section } from '../../../web-client/panels/section.js';
 import {
-  cameraEntries, lookingAt, markerEntries, middleOf, movedView, placeOf, viewNames,
+  cameraEntries, lookingAt, middleOf, movedView, placeOf, viewNames,
 } from '../../../web-client/panels/views-section.js';
 
 afterEach(() => setLanguage('en'));
@@ -62,12 +62,6 @@ describe('the scene', () => {
 });
 
 describe('views', () => {
-  test('a marker that the frame does not have is lost', () => {
-    const all = { a: { text: 'Scratch' }, b: { text: '' } };
-    assert.deepEqual(markerEntries(all, { a: [0, 0, 0] }), [['a', { text: 'Scratch', lost: false }], ['b', { text: 'b', lost: true }]]);
-    assert.deepEqual(markerEntries(all, undefined).map(([, { lost }]) => lost), [true, true]);
-  });
-
   test('the camera in use is marked, and one without a name is called by its number', () => {
     const entries = cameraEntries({ 3: { name: 'Front' }, 5: { name: '' } }, 5);
     assert.deepEqual(entries, [['3', { text: 'Front', used: false }], ['5', { text: '#5', used: true }]]);
@@ -92,7 +86,7 @@ describe('views', () => {
     assert.deepEqual(middleOf(view, { top: 20, right: 400, bottom: 120, left: 0 }), { x: 300, y: 350 });
   });
 
-  test('a marker goes with its part where the server tells the place in the part\'s space', () => {
+  test('a note goes with its part where the server tells the place in the part\'s space', () => {
     const picked = { node: 7, name: 'Door', point: [1, 2, 3], normal: [0, 0, 1], distance: 4 };
     assert.deepEqual(placeOf(picked), { point: [1, 2, 3] });
     assert.deepEqual(placeOf({ ...picked, local: [0.5, 0, 0] }), { node: 7, point: [0.5, 0, 0] });
@@ -128,13 +122,13 @@ describe('what is kept of a scene', () => {
   test('comes back as it was, without what has come since', () => {
     const [mm, cm] = ['mm', 'cm'].map((shown) => ({ metres: 1, shown }));
     const before = {
-      views: { home: { fov: 30 }, A: { fov: 20 } }, markers: {}, measures: { w: { kind: 'angle' } }, unit: cm,
+      views: { home: { fov: 30 }, A: { fov: 20 } }, markers: { old: { text: 'y' } }, measures: { w: { kind: 'angle' } }, unit: cm,
       cues: { a: { ms: 5 } }, nodes: { 1: { active: false } },
     };
-    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' } }, measures: {}, unit: mm, cues: { b: {} }, nodes: {} };
+    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' }, old: { text: 'z' } }, measures: {}, unit: mm, cues: { b: {} }, nodes: {} };
     const patch = backTo(before, now);
     assert.deepEqual(patch, {
-      views: { home: { fov: 30 }, A: { fov: 20 }, B: null }, markers: { m: null }, measures: { w: { kind: 'angle' } }, unit: cm,
+      views: { home: { fov: 30 }, A: { fov: 20 }, B: null }, markers: { m: null, old: { author: null, view: null, text: 'y' } }, measures: { w: { kind: 'angle' } }, unit: cm,
       cues: { a: { ms: 5 }, b: null }, nodes: { 1: { active: false } },
     });
     assert.deepEqual(mergePatch(now, patch), before);
