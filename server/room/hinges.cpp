@@ -5,6 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "scene/camera.hpp"
+
 namespace vrut::server::room {
 
 glm::dmat4 opened(const scene::Node& node, double part) {

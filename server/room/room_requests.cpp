@@ -103,9 +103,12 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     plan::View view = view_of_laid(*laid);
     view.width = snapshot.width;
     view.height = snapshot.height;
-    PictureOrder order{
-        received.client, view, header_of(laid->state, view, view_size_), snapshot.format, snapshot.jpeg_quality,
-        snapshot.samples};
+    PictureOrder order{received.client,
+                       view,
+                       header_of(laid->state, view, view_size_),
+                       snapshot.format,
+                       snapshot.jpeg_quality,
+                       snapshot.samples};
     order.header.revision = document()->revision();
     order.header.snapshot = received.message.id;
     order.header.handled = *received.message.id;

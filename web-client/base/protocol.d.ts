@@ -59,7 +59,7 @@ export type ClientCue = {
   camera?: CameraOverlay;
   /** Asks for exactly one answer, which has the same `id`. It rises. */
   id?: number;
-  /** How long it takes to come to it; without it, as the cue says. */
+  /** How long it takes to come to it; without it the cue's own time. */
   ms?: number;
   /** Which. Without `step`. */
   name?: string;
@@ -918,7 +918,7 @@ export type ServerChecked = {
   id: number;
   /** What does not go with the scene; empty: all of it does. */
   problems: Array<{
-    /** Of which cue; missing: of the whole list. */
+    /** The cue; missing: it is the whole list. */
     cue?: string;
     /** What is wrong, a sentence. */
     message: string;
