@@ -10,6 +10,8 @@
 
 /** Pixels across, of pictures that are shown half as wide. */
 const WIDTH = 240;
+/** A pixel; enough at this size, and many are waited for. */
+const SAMPLES = 4;
 
 /** Pictures of things of the state, drawn by the server, one after the other, and again only where one looks another. */
 export class Pictures {
@@ -63,7 +65,7 @@ export class Pictures {
     this.#draws = true;
     for (let next = this.#next(); next; next = this.#next()) {
       const { name, key, request } = next;
-      const picture = await this.#commands.picture({ ...this.#size(), ...request });
+      const picture = await this.#commands.picture({ ...this.#size(), samples: SAMPLES, ...request });
       // Where it could not be drawn, it is tried again when it is shown again.
       if (!picture) this.#made.delete(key);
       else if (this.#wanted(name)?.key === key) this.#made.set(key, URL.createObjectURL(new Blob([picture.data], { type: 'image/jpeg' })));

@@ -76,7 +76,7 @@ test('pictures are drawn one after the other, once for a look', async (t) => {
   pictures.show(a, 'A');
   pictures.show(b, 'B');
   pictures.show(again, 'A');
-  assert.deepEqual(asked.map(({ wanted }) => wanted), [{ width: 240, height: 120, cue: 'A' }]);
+  assert.deepEqual(asked.map(({ wanted }) => wanted), [{ width: 240, height: 120, samples: 4, cue: 'A' }]);
   asked[0].resolve({ data: new Uint8Array(1) });
   await settled();
   assert.deepEqual([a.src, again.src, b.src], ['picture 0', 'picture 0', undefined]);
