@@ -1,6 +1,6 @@
 import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
-import { asItWas, noteNames, pictureOfNote } from '../base/notes.js';
+import { asItWas, noteNames, pictureOfNote, placeInPicture } from '../base/notes.js';
 import { unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say, writtenTime } from '../base/texts.js';
@@ -73,21 +73,27 @@ function notes({ commands, store, offer, report }) {
     content: [list.element, entry.element],
     // Where they are changes with each frame; here only which the frame has.
     show: onChange(({ state, header }) => [state.markers, String(Object.keys(header?.markers ?? {}))], (known) => {
-      list.show(noteEntries(known, store.now.header?.markers));
+      list.show(noteEntries(known, store.now.header));
       entry.show(unusedName(say('notes.newText'), Object.values(known).map(({ text }) => text)));
     }),
   };
 }
 
 /**
- * [name, item] of each note; lost where it was made from no view, and `drawn`, those of the frame, does not have it.
+ * [name, item] of each note: where of its picture it is, and whether it is lost, as it was made from no view and is not
+ * in the frame that was drawn last.
  *
  * @param {Notes} all
- * @param {FrameHeader['markers']} drawn
- * @returns {[string, {note: Note, lost: boolean}][]}
+ * @param {Pick<FrameHeader, 'markers'|'view'>|null|undefined} drawn
+ * @returns {[string, {note: Note, lost: boolean, at?: {x: number, y: number}}][]}
  */
 export function noteEntries(all, drawn) {
-  return noteNames(all).map((name) => [name, { note: all[name], lost: !all[name].view && !drawn?.[name] }]);
+  return noteNames(all).map((name) => {
+    const note = all[name];
+    const point = drawn?.markers?.[name];
+    const at = note.view && drawn && point ? placeInPicture(note.view, point, drawn.view.width / drawn.view.height) : undefined;
+    return [name, { note, lost: !note.view && !point, at }];
+  });
 }
 
 /** Who wrote a note and when, as far as that is known. @param {Note} note */
@@ -123,11 +129,13 @@ function noteRow(name, { go, remove, change, pictures, seen }) {
   };
   return {
     children: [there, element('div', { className: 'tools' }, done.element, unfold, away), editor],
-    show({ note, lost }) {
+    show({ note, lost, at }) {
       const text = note.text || name;
       title.textContent = text;
       by.textContent = byWords(note);
       image.hidden = !note.view;
+      // The note's place is not cut off.
+      if (at) image.style.objectPosition = `${(100 * at.x).toFixed(1)}% ${(100 * at.y).toFixed(1)}%`;
       if (image.dataset.seen === 'true') pictures.show(image, name);
       there.disabled = lost;
       there.classList.toggle('done', note.done);

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
 import { mergePatch } from '../../../web-client/base/merge-patch.js';
-import { asItWas, noteNames, pictureOfNote } from '../../../web-client/base/notes.js';
+import { asItWas, noteNames, pictureOfNote, placeInPicture } from '../../../web-client/base/notes.js';
 import { setLanguage } from '../../../web-client/base/texts.js';
 import { fetchFile } from '../../../web-client/connection/files.js';
 import { byWords, noteEntries } from '../../../web-client/panels/notes-section.js';
@@ -19,7 +19,10 @@ describe('notes', () => {
 
   test('are lost where the frame does not have them, unless they were made from a view', () => {
     const all = { a: { text: 'Scratch' }, b: { text: '' }, c: { text: '', view } };
-    assert.deepEqual(noteEntries(all, { a: [0, 0, 0] }).map(([name, { lost }]) => [name, lost]), [['a', false], ['b', true], ['c', false]]);
+    const drawn = { markers: { a: [0, 0, 0], c: [0, 0, 0] }, view: { width: 200, height: 100 } };
+    const entries = noteEntries(all, drawn);
+    assert.deepEqual(entries.map(([name, { lost }]) => [name, lost]), [['a', false], ['b', true], ['c', false]]);
+    assert.deepEqual(entries.map(([, { at }]) => at), [undefined, undefined, { x: 0.5, y: 0.5 }]);
     assert.deepEqual(noteEntries(all, undefined).map(([, { lost }]) => lost), [true, true, false]);
   });
 
@@ -27,6 +30,17 @@ describe('notes', () => {
     assert.deepEqual(asItWas({ point: [0, 0, 0], text: 'x' }), { point: [0, 0, 0], text: 'x', author: null, view: null });
     const note = { point: [0, 0, 0], text: 'x', author: 'Bea', time: 5, view, done: true };
     assert.deepEqual(mergePatch({}, asItWas(note)), note);
+  });
+
+  test('lie somewhere in their pictures, in the middle where they are outside', () => {
+    const seen = { ...view, fov: 90 }; // from 5 away, 10 high
+    const at = (point, aspect = 2) => Object.values(placeInPicture(seen, point, aspect)).map((part) => Number(part.toFixed(6)));
+    assert.deepEqual(at([0, 0, 0]), [0.5, 0.5]);
+    assert.deepEqual(at([5, 2.5, 0]), [0.75, 0.25]);
+    assert.deepEqual(at([2.5, -2.5, 0], 1), [0.75, 0.75]);
+    assert.deepEqual(at([5, 2.5, -5]), [0.625, 0.375]);
+    for (const outside of [[11, 0, 0], [0, -6, 0], [1, 1, 9], [0, 0, 5]]) assert.deepEqual(at(outside), [0.5, 0.5], String(outside));
+    assert.deepEqual(Object.values(placeInPicture({ ...seen, eye: [5, 0, 0] }, [0, 0, -2.5], 1)), [0.75, 0.5]);
   });
 
   test('look another where their view or their place is another, and not for another text', () => {
