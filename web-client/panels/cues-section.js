@@ -158,7 +158,7 @@ function files({ commands, store, offer, report }) {
     download(JSON.stringify(list, null, 1), 'application/json', `${list.scene.replace(/\.[^.]*$/, '').replaceAll('/', '-')}-cues.json`);
   };
   const save = button(say('cues.export'), () => saveList(), { icon: 'save' });
-  const open = button(say('cues.import'), () => input.click(), { icon: 'open' });
+  const open = button(say('cues.openList'), () => input.click(), { icon: 'open' });
   return {
     content: [element('div', { className: 'buttons' }, open, save), input, problems],
     show: onChange(({ state }) => [Object.keys(state.cues).length === 0], (hidden) => Object.assign(save, { hidden })),

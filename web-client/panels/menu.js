@@ -1,10 +1,12 @@
 import { button, element } from '../base/element.js';
+import { pictureOfNote } from '../base/notes.js';
 import { language, say } from '../base/texts.js';
 import { cuesSection } from './cues-section.js';
 import { Dialogs } from './dialogs.js';
 import { measuresSection } from './measures-section.js';
 import { notesSection } from './notes-section.js';
 import { partsSection } from './parts-section.js';
+import { Pictures } from './pictures.js';
 import { presentationSection } from './presentation-section.js';
 import { foldable } from './section.js';
 import { sectionsSection } from './sections-section.js';
@@ -29,7 +31,7 @@ export class Menu {
   /** @type {Section[]} */
   #sections = [];
 
-  /** Empty until `rebuild`. @param {Omit<Page, 'makeRoom'> & {setLanguage: (code: string) => void}} page */
+  /** Empty until `rebuild`. @param {Omit<Page, 'makeRoom'|'notePictures'> & {setLanguage: (code: string) => void}} page */
   constructor(page) {
     const { store } = page;
     const opener = /** @type {HTMLButtonElement} */ (document.getElementById('menu-button'));
@@ -39,7 +41,11 @@ export class Menu {
     this.#stage = stage;
     this.#button = opener;
     this.#panel = panel;
-    this.#page = { ...page, makeRoom: () => matchMedia(SHEET).matches && this.close() };
+    this.#page = {
+      ...page,
+      makeRoom: () => matchMedia(SHEET).matches && this.close(),
+      notePictures: new Pictures({ store, commands: page.commands, find: ({ markers }, name) => pictureOfNote(markers, name) }),
+    };
     this.#dialogs = new Dialogs(this.#page);
     this.#watching = new Watching(store, page.turnPointing);
     opener.onclick = () => (stage.classList.contains('clean') ? this.#clean(false) : this.open(opener));

@@ -1,11 +1,10 @@
 import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
-import { asItWas, noteNames, pictureOfNote, placeInPicture } from '../base/notes.js';
+import { asItWas, noteNames, placeInPicture } from '../base/notes.js';
 import { unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say, writtenTime } from '../base/texts.js';
 import { rows, toggle } from './controls.js';
-import { Pictures } from './pictures.js';
 import { each, joined, stateOf } from './section.js';
 import { field, lookingAt, middleOf, placeOf } from './views-section.js';
 
@@ -35,10 +34,9 @@ export function notesSection(page) {
 }
 
 /** @param {Page} page */
-function notes({ commands, store, offer, report }) {
+function notes({ commands, store, offer, report, notePictures: pictures }) {
   const { patch, pick, fly } = commands;
   const all = () => stateOf(store).markers;
-  const pictures = new Pictures({ store, commands, find: (state, name) => pictureOfNote(state.markers, name) });
   /** Draws what comes into view, and nothing else: there may be many. */
   const seen = new IntersectionObserver((entries) => {
     for (const { target, isIntersecting } of entries) {

@@ -9,6 +9,7 @@ import { onChange } from '../base/store.js';
  * @import { Commands } from '../connection/commands.js'
  * @import { Meter } from '../connection/meter.js'
  * @import { Control } from './controls.js'
+ * @import { Pictures } from './pictures.js'
  */
 
 /**
@@ -16,7 +17,8 @@ import { onChange } from '../base/store.js';
  *
  * @typedef {{store: Store, commands: Commands, meter: Meter, report: (error: *) => void,
  *   offer: (text: string, label: string, act: () => void) => void, nextTap: NextTap, snapping: Snapping,
- *   turnPointing: () => void, present: () => void, makeRoom: () => void, fetchFile: (name: string) => Promise<Blob>}} Page `turnPointing`: a finger begins or ends to
+ *   turnPointing: () => void, present: () => void, makeRoom: () => void, fetchFile: (name: string) => Promise<Blob>,
+ *   notePictures: Pictures}} Page `turnPointing`: a finger begins or ends to
  *   point; `present`: opens what a presenter has of the cues; `makeRoom`: closes the menu where that covers most of the
  *   picture; `fetchFile`: of the server, or an error for `report`
  *

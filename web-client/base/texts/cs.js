@@ -289,7 +289,7 @@ export const cs = {
   'cues.kept': '„{name}“ je vidět odtud.',
   'cues.onlyYou': '„{name}“ vidíte jen vy, dokud ho neukážete.',
   'cues.export': 'Uložit seznam',
-  'cues.import': 'Otevřít seznam',
+  'cues.openList': 'Otevřít seznam',
   'cues.imported': 'Ze seznamu je převzato {count} záběrů.',
   'cues.noList': 'Tento soubor není seznam záběrů.',
 

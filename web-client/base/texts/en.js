@@ -282,7 +282,7 @@ export const en = {
   'cues.kept': '“{name}” is seen from here.',
   'cues.onlyYou': 'Only you see “{name}” until you take it.',
   'cues.export': 'Save the list',
-  'cues.import': 'Open a list',
+  'cues.openList': 'Open a list',
   'cues.imported': '{count} cues are taken from the list.',
   'cues.noList': 'This file is no list of cues.',
 
