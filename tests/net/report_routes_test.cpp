@@ -77,10 +77,10 @@ TEST_CASE("a report draws its pictures one after the other, and keeps none of th
 
 TEST_CASE("two reports at most are made at once, and who goes away makes room") {
     WithNotes notes(40, {.takes = 5ms});
+    const std::uint64_t before = notes.server.metrics().frames_encoded;
     RawConnection second(notes.server.port());
     {
         RawConnection first(notes.server.port());
-        const std::uint64_t before = notes.server.metrics().frames_encoded;
         first.send(get("/report.html"));
         second.send(get("/report.html"));
         REQUIRE(eventually([&] { return notes.server.metrics().frames_encoded >= before + 2; }));
@@ -95,4 +95,5 @@ TEST_CASE("two reports at most are made at once, and who goes away makes room") 
         third.send(get("/report.html"));
         return third.answer(false, 100ms).status == 0;
     }));
+    CHECK(notes.server.metrics().frames_encoded < before + 41);  // neither had come to its end
 }
