@@ -362,6 +362,7 @@ const SESSIONS = {
     await sleep(100);
     await flown(show({ name: 'Cut' })); // while another is on its way
     assert.equal(user.state.cue.name, 'Cut');
+    await user.drag([200, 125], [240, 140], 10);
     return user;
   },
 

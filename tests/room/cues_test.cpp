@@ -248,13 +248,14 @@ TEST_CASE("cues: all that is wrong with a list, a sentence each") {
         return answers.at(0)["fitting"];
     };
     CHECK(check({": the list was made for 'other.vrut', and this is 'door.vrut'",
-           "Bad: 'cues.Bad.lights.active': there is no light '8'",
-           "Bad: 'cues.Bad.selection.node': there is no node 99",
-           "Nodes: 'cues.Nodes.nodes.3.material': there is no material 5",
-           "Nodes: 'cues.Nodes.nodes': there is no node 77", "None: 'cues.None' must be an object",
-           "Odd: 'cues.Odd.ms' must be a number from 0.0 to 60000.0"}) == json{"Good"});
+                 "Bad: 'cues.Bad.lights.active': there is no light '8'",
+                 "Bad: 'cues.Bad.selection.node': there is no node 99",
+                 "Nodes: 'cues.Nodes.nodes.3.material': there is no material 5",
+                 "Nodes: 'cues.Nodes.nodes': there is no node 77", "None: 'cues.None' must be an object",
+                 "Odd: 'cues.Odd.ms' must be a number from 0.0 to 60000.0"}) == json{"Good"});
     list["version"] = 2;
-    CHECK(check({": the list is of version 2, and this program reads version 1: use a newer program"}).empty());
+    CHECK(
+        check({": the list is of version 2, and this program reads version 1: use a newer program"}).empty());
     list = {{"format", "vrut-preview-cues"}, {"version", 1}, {"cues", {{"Good", json::object()}}}};
     CHECK(check({}) == json{"Good"});
     CHECK_FALSE(stage.state()["cues"].contains("Good"));
