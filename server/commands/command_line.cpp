@@ -493,13 +493,11 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
     add_drawing(*command, arguments);
     add_cues(*command, arguments);
     command->exit_statuses = statuses("The image is written.");
-    command->examples = {
-        {"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
-        {"vrut-preview render my.vrut -o my.jpg --size 1920x1080 --eye 3,2,5",
-         "Draw it from a point, in another size."},
-        {"vrut-preview render my.glb --cues my-cues.json -o my.mp4", "Draw a film of a presentation."},
-        {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
-         "Trace a scene with mirrors ray by ray."}};
+    command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
+                         {"vrut-preview render my.vrut -o my.jpg --size 1920x1080 --eye 3,2,5",
+                          "Draw it from a point, in another size."},
+                         {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
+                          "Trace a scene with mirrors ray by ray."}};
     command->callback([&arguments] { render_command(arguments); });
     return command;
 }
@@ -647,7 +645,10 @@ std::shared_ptr<Command> describe_cues(CuesArguments& arguments) {
     add_reading(*command, arguments.read);
     command->exit_statuses = statuses("All of the list goes with the scene.",
                                       "The command line is wrong, as where ACTION is not check.");
-    command->examples = {{"vrut-preview cues check my-cues.json my.glb", "Print what would go wrong."}};
+    command->examples = {{"vrut-preview cues check my-cues.json my.glb", "Print what would go wrong."},
+                         {"vrut-preview cues check my-cues.json my.glb >wrong.txt", "Keep that in a file."},
+                         {"vrut-preview cues check my-cues.json my.obj --up-axis z",
+                          "Check it against a scene whose z axis leads up."}};
     command->callback([&arguments] { cues_command(arguments); });
     return command;
 }

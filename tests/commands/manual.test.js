@@ -22,6 +22,7 @@ before(() => {
   // The log looks for its scene beside itself and in the folder above.
   for (const name of ['room.vrut', 'my.vrut']) fs.cpSync(path.join(DATA, 'scenes/room.vrut'), path.join(work, name));
   fs.cpSync(path.join(DATA, 'logs/pinch.jsonl'), path.join(work, 'recordings/session.jsonl'));
+  fs.writeFileSync(path.join(work, 'my-cues.json'), '{"format": "vrut-preview-cues", "version": 1, "cues": {"All": {"text": "Welcome"}}}');
   for (const name of ['my.glb', 'my.obj']) output(PROGRAM, ['convert', 'my.vrut', name], { cwd: work });
   for (const name of ['my.png', 'truth.png']) output(PROGRAM, ['render', 'my.vrut', '-o', name, '--size', '64x36'], { cwd: work });
   output(PROGRAM, ['--write-manual', manual]);
