@@ -12,7 +12,10 @@ namespace {
 tl::expected<CueState, Error> read_cue(const std::string& name, const Json& cue, const State& shown) {
     const auto next = patched(shown, shown, {{"cues", {{name, cue}}}});
     if (!next) return tl::unexpected(next.error());
-    return next->cues->at(name);
+    const auto read = next->cues->find(name);
+    if (read != next->cues->end()) return read->second;
+    return tl::unexpected(
+        Error{{}, error_code::bad_message, "'cues." + excerpt(name) + "' must be an object"});
 }
 
 ReadCueList read_or_throw(const Json& json, State shown) {
@@ -27,11 +30,7 @@ ReadCueList read_or_throw(const Json& json, State shown) {
         throw BadJson{error_code::too_many, "'cues' holds " + std::to_string(kMaxCues) + " entries at most"};
     shown.cues = {};
     ReadCueList read{list.scene, {}};
-    for (const auto& [name, cue] : list.cues->items())
-        read.cues.emplace(name,
-                          or_error([&] {
-                              return read_object(cue, "cues." + excerpt(name));
-                          }).and_then([&](const Json& object) { return read_cue(name, object, shown); }));
+    for (const auto& [name, cue] : list.cues->items()) read.cues.emplace(name, read_cue(name, cue, shown));
     return read;
 }
 
