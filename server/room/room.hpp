@@ -377,6 +377,8 @@ private:
                                              std::shared_ptr<const scene::PlacedScene>& placed);
     std::optional<protocol::Error> use_camera(protocol::State& next, const scene::PlacedScene& placed,
                                               const protocol::NamedCameraMembers& named);
+    /// Brings views, markers, measures and cues in line with the scene, or what is wrong with them.
+    std::optional<protocol::Error> use_entries(protocol::State& next, const scene::PlacedScene& placed) const;
     std::optional<protocol::Error> use_views(protocol::State& next, const scene::PlacedScene& placed) const;
     std::optional<protocol::Error> check_names(const protocol::State& next) const;
 

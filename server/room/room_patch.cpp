@@ -25,11 +25,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     auto error = use_nodes(*next, placed);
     const protocol::NamedCameraMembers named = protocol::named_camera_members(*patch.patch);
     if (!error) error = use_camera(*next, *placed, named);
-    if (!error) error = use_views(*next, *placed);
-    if (!error) error = use_notes(*next, *placed);
-    if (!error) error = check_names(*next);
-    if (!error) error = check_measures(*next);
-    if (!error) error = use_cues(*next);
+    if (!error) error = use_entries(*next, *placed);
     if (error) return reject(received, error->code.c_str(), error->message);
 
     const protocol::ViewState home = state_.views->at("home");
@@ -64,11 +60,7 @@ std::optional<Error> Room::use_changes() {
     if (!next) return next.error();
     std::shared_ptr<const scene::PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
-    if (!error) error = use_views(*next, *placed);
-    if (!error) error = use_notes(*next, *placed);
-    if (!error) error = check_names(*next);
-    if (!error) error = check_measures(*next);
-    if (!error) error = use_cues(*next);
+    if (!error) error = use_entries(*next, *placed);
     if (error) return error;
     state_ = *std::move(next);
     scene_ = std::move(placed);
@@ -124,6 +116,14 @@ std::optional<Error> Room::use_camera(protocol::State& next, const scene::Placed
     if (index != scene::kNone && scene::camera_at(placed, index) == pose)
         next.camera = state_at_node(pose, placed, index);
     return std::nullopt;
+}
+
+std::optional<Error> Room::use_entries(protocol::State& next, const scene::PlacedScene& placed) const {
+    if (auto error = use_views(next, placed)) return error;
+    if (auto error = use_notes(next, placed)) return error;
+    if (auto error = check_names(next)) return error;
+    if (auto error = check_measures(next)) return error;
+    return use_cues(next);
 }
 
 std::optional<Error> Room::use_views(protocol::State& next, const scene::PlacedScene& placed) const {

@@ -49,8 +49,9 @@ struct Studio {
         return render(output) + std::vector<std::string>{"--keyframes", path("flight.json")};
     }
     std::vector<std::string> replay(const std::string& log, const std::string& output) const {
-        return {"replay",  VRUT_DATA "/logs/" + log + ".jsonl",
-                "--scene", VRUT_DATA "/scenes/room.vrut",
+        const std::string data = VRUT_DATA;
+        return {"replay",  data + "/logs/" + log + ".jsonl",
+                "--scene", data + "/scenes/room.vrut",
                 "--film",  path(output)};
     }
     scene::Image image(const std::string& name) const {
