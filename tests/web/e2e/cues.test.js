@@ -133,6 +133,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       const image = page.locator('#prepare img');
       await chip('Arrival', false).or(chip('Arrival', true)).tap();
       await until('the first cue', () => state().cue.name === 'Arrival' && state().camera.fov === state().cues.Arrival.camera.fov);
+      for (const { wire } of watchers) await wire.until('the same', () => wire.revision === presenter.wire.revision);
       const revisions = watchers.map(({ wire }) => wire.revision);
       const before = pose(state().camera);
       await button('Prepare', strip()).tap();
