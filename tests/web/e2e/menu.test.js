@@ -7,7 +7,7 @@ import { Tablet, browserIsMissing, difference, launchBrowser } from './tablet.js
 const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
 const UPRIGHT = { width: 820, height: 1180, pixelRatio: 2 };
 const PHONE = { width: 390, height: 844, pixelRatio: 3 };
-const IN_MENU = ['parts', 'views', 'sections', 'measures', 'presentation'];
+const IN_MENU = ['parts', 'views', 'cues', 'notes', 'sections', 'measures', 'presentation'];
 const SECTIONS = ['scene', 'renderer', 'camera', 'light', 'background'];
 const IN_SETTINGS = [...SECTIONS, 'quality', 'recording', 'connection'];
 const LEAST_TARGET = 48;
