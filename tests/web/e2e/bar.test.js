@@ -59,7 +59,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     }
 
     test('all its buttons have names, and room for a finger', async () => {
-      const spare = name === 'phone' ? [] : ['Sections', 'Measure', 'Point'];
+      const spare = name === 'phone' ? [] : ['Sections', 'Measure', 'Point', 'Cues'];
       assert.deepEqual(await bar().getByRole('button').allTextContents(),
         ['Home', 'Fit all', 'Back', 'Views', 'Variants', 'Doors', ...spare, 'More']);
       await assertSlim();
