@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxSceneName = 1000;   ///< bytes
 inline constexpr std::size_t kMaxCueText = 2000;     ///< bytes, for who speaks
 inline constexpr std::size_t kMaxCueProblems = 200;  ///< that are listed
 inline constexpr std::size_t kMaxScenes = 1000;      ///< in a list
-inline constexpr std::size_t kMaxChoices = 64;       ///< of a switch that tells of its children
+inline constexpr std::size_t kMaxChoices = 64;       ///< of a switch whose children are named
 inline constexpr std::size_t kMaxLine = 64;          ///< points of a line that measures are drawn with
 /// Highest message id and revision: 2^53 - 1, exact in JSON.
 inline constexpr std::int64_t kMaxInteger = (std::int64_t{1} << 53) - 1;

@@ -71,7 +71,7 @@ struct EdgeSnapshotSent {
 struct EdgePicture {
     std::string name;
     int width = 0, height = 0;  ///< pixels; 0: the view's
-    OtherView view = {};        ///< of which the picture is to be
+    OtherView view = {};        ///< that the picture shows
 };
 struct EdgeMessage {
     std::string edge;  ///< the sender

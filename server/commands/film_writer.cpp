@@ -210,7 +210,7 @@ private:
 
 FilmWriter::FilmWriter(const fs::path& path, int width, int height, int images_per_second)
     : file_(std::make_unique<File>(path, width, height, images_per_second)) {
-    file_->begin();  // what it has begun by then goes with it
+    file_->begin();  // where that fails, the file goes
 }
 
 FilmWriter::~FilmWriter() = default;

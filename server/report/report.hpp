@@ -21,8 +21,8 @@ std::vector<protocol::OtherView> pictures_of(const protocol::ReportedState& stat
 /// A JPEG file; null: it cannot be drawn.
 using Picture = std::shared_ptr<const std::string>;
 
-/// One HTML file without references to others. `pictures`: those of pictures_of(), of which the last may be
-/// left out. `made`: milliseconds since 1970, UTC.
+/// One HTML file without references to others. `pictures`: those of pictures_of(), or the
+/// first ones. `made`: milliseconds since 1970, UTC.
 std::string html(const protocol::ReportedState& state, const std::vector<Picture>& pictures,
                  std::int64_t made);
 

@@ -30,7 +30,7 @@ export function contextOf({ scene, navigation, views }, { width, height }, surfa
 }
 
 /**
- * Where a message of input leads; others only begin drags anew. `gestures` take it.
+ * Where a message of input leads; other messages restart drags. `gestures` take it.
  *
  * @param {Gestures} gestures
  * @param {*} message
