@@ -31,7 +31,9 @@ export function moved(entries, names, name, by) {
   const at = names.indexOf(name);
   const other = names[at + by];
   if (other === undefined) return null;
-  const changed = names.with(at, other).with(at + by, name).map((one, order) => ({ one, order }))
+  const after = [...names];
+  [after[at], after[at + by]] = [other, name];
+  const changed = after.map((one, order) => ({ one, order }))
     .filter(({ one, order }) => entries[one].order !== order);
   return Object.fromEntries(changed.map(({ one, order }) => [one, { order }]));
 }

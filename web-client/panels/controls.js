@@ -114,7 +114,7 @@ export function numbers(label, labels, change) {
   const control = patient(group(label, 'numbers', ...labelledInputs), apply, () => {});
   for (const [i, input] of inputs.entries()) {
     input.onchange = () => {
-      if (input.valueAsNumber >= 0) control.during(change(latest = latest.with(i, input.valueAsNumber)));
+      if (input.valueAsNumber >= 0) control.during(change(latest = latest.map((value, at) => at === i ? input.valueAsNumber : value)));
       else input.value = latest[i];
     };
     // A value that the server rejected is replaced by the present one when the field loses the focus.
