@@ -60,11 +60,13 @@ void Framebuffer::read(std::span<std::uint8_t> pixels) {
     round_to_bytes(rgba16_pixels_, pixels);
 }
 
-void Framebuffer::read_depth(std::span<float> pixels) const {
-    assert(pixels.size() == static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+void Framebuffer::read_depth(int first_row, std::span<float> pixels) const {
+    const int rows = static_cast<int>(pixels.size()) / width_;
+    assert(pixels.size() == static_cast<std::size_t>(width_) * static_cast<std::size_t>(rows));
+    assert(first_row >= 0 && first_row + rows <= height_);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, pixels.data());
+    glReadPixels(0, first_row, width_, rows, GL_DEPTH_COMPONENT, GL_FLOAT, pixels.data());
 }
 
 void wait_for_gl() {

@@ -25,8 +25,8 @@ public:
     void bind() const;
     /// Copies the colours: 4 bytes a pixel, rows from the bottom up, width · height · 4 bytes in all.
     void read(std::span<std::uint8_t> pixels);
-    /// Copies the depth of each pixel, 0 to 1, in the same order.
-    void read_depth(std::span<float> pixels) const;
+    /// Copies the depth of each pixel, 0 to 1, in the same order, of so many whole rows from a first on.
+    void read_depth(int first_row, std::span<float> pixels) const;
 
 private:
     int width_, height_;

@@ -137,21 +137,22 @@ struct Renderer::Impl {
     gl::IdPass ids{programs};
     gl::DepthPass depths{programs};
     std::unique_ptr<gl::Resolver> resolver = gl::make_cpu_resolver();
-    std::vector<float> depth;  // of the image drawn last
+    std::vector<float> depth;  // of a strip of the image drawn last
 };
 
 void Renderer::Impl::read_depth(plan::RenderJob& job, const gl::Framebuffer& target) {
     const Clock::time_point start = Clock::now();
-    const double near = plan::near_distance(job.view);
-    depth.resize(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height()));
-    target.read_depth(depth);
-    std::span<const float> transparent;
-    if (scene)
-        transparent =
-            depths.read(job.planner->plan().scene, *scene,
-                        math::reversed_clip_from_view(plan::projection_of(job.view), near),
-                        warp::kAddedSide * job.depth_size.columns, warp::kAddedSide * job.depth_size.rows);
-    job.depth = warp::depth_map_of(depth, target.width(), target.height(), near, job.depth_size, transparent);
+    // A strip that is sampled at once is still in the processor's cache.
+    constexpr int kStrip = 1 << 14;
+    warp::DepthSamples samples(target.width(), target.height(), job.depth_size);
+    const int rows = std::max(kStrip / target.width(), 1);
+    for (int first = 0; first < target.height(); first += rows) {
+        const int count = std::min(rows, target.height() - first);
+        depth.resize(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(count));
+        target.read_depth(first, depth);
+        samples.add(depth);
+    }
+    job.depth = samples.map(plan::near_distance(job.view), scene ? depths.read() : std::span<const float>());
     job.stats.readback_ms += milliseconds_since(start);
 }
 
@@ -175,6 +176,11 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
     const int uploads_before = scene ? scene->uploads() : 0, programs_before = programs.compiled();
     gl::SampleDrawing& sample = sample_of(job);
     const bool drawn = sample.draw(job, passes, budget);
+    const bool has_depth = job.depth_size.columns > 0 && job.samples == 0;
+    if (drawn && has_depth && scene)
+        depths.draw(job.planner->plan().scene, *scene,
+                    math::reversed_clip_from_view(plan::projection_of(view), plan::near_distance(view)),
+                    warp::kAddedSide * job.depth_size.columns, warp::kAddedSide * job.depth_size.rows);
     drawn ? gl::wait_for_gl() : submitted.submit();
     if (drawn) sample.subtract_discarded(stats);
     stats.render_ms += milliseconds_since(start);
@@ -183,7 +189,7 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
     if (!drawn) return false;
 
     resolver->read(job, sample.image_target());
-    if (job.depth_size.columns > 0 && job.samples == 0) read_depth(job, sample.image_target());
+    if (has_depth) read_depth(job, sample.image_target());
     targets = sample.release();
     ++stats.samples;
     return true;

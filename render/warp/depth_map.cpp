@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
@@ -15,24 +17,20 @@ namespace {
 constexpr int kParts = DepthMap::kBits * DepthMap::kBits;
 /// Steps between what belongs to two surfaces: an edge goes through the block.
 constexpr int kEdge = 3;
+constexpr std::size_t kAtOnce = 16;  // parts in a vector of the processor
+constexpr std::size_t kAddedRepeated = DepthMap::kBits / kAddedSide;
 
 using Parts = std::array<std::uint8_t, kParts>;
+
+/// By value: the compiler makes no vectors of std::min's references.
+std::uint8_t smaller(std::uint8_t a, std::uint8_t b) { return a < b ? a : b; }
+std::uint8_t larger(std::uint8_t a, std::uint8_t b) { return a > b ? a : b; }
 
 /// Of a block with an edge.
 struct Divided {
     std::uint8_t near = 0, far = 0;
     std::uint16_t mask = 0;
 };
-
-std::uint8_t mean(const Parts& parts, std::uint16_t mask) {
-    int sum = 0, count = 0;
-    for (unsigned i = 0; i < parts.size(); ++i) {
-        if ((mask >> i & 1U) == 0) continue;
-        sum += parts[i];
-        ++count;
-    }
-    return static_cast<std::uint8_t>((sum + count / 2) / std::max(count, 1));
-}
 
 /// The parts of a mask, and those beside them: pixels at an edge have something of the colours of both sides,
 /// and go with what is nearer.
@@ -46,7 +44,7 @@ std::uint16_t widened(std::uint16_t mask) {
 /// parts lie one after the other.
 std::optional<Divided> divided_of(const Parts& parts, int lowest, int highest) {
     const int middle = (lowest + highest) / 2;
-    int below = lowest, above = highest;
+    int below = lowest, above = highest, all = 0, near = 0;
     unsigned mask = 0;
     for (unsigned i = 0; i < parts.size(); ++i) {
         const int part = parts[i];
@@ -54,17 +52,22 @@ std::optional<Divided> divided_of(const Parts& parts, int lowest, int highest) {
         mask |= static_cast<unsigned>(is_near) << i;
         above = std::min(above, is_near ? part : above);
         below = std::max(below, is_near ? below : part);
+        all += part;
+        near += is_near ? part : 0;
     }
     if (above - below < std::max(kEdge, (highest - lowest) / 2)) return {};
-    const auto near = static_cast<std::uint16_t>(mask);
-    return Divided{mean(parts, near), mean(parts, static_cast<std::uint16_t>(~near)), widened(near)};
+    const int count = std::popcount(mask);
+    const auto mean = [](int sum, int of) { return static_cast<std::uint8_t>((sum + of / 2) / of); };
+    return Divided{mean(near, count), mean(all - near, kParts - count),
+                   widened(static_cast<std::uint16_t>(mask))};
 }
 
 /// Median of left, upper, and the plane through left, upper and upper left (Weinberger et al., "LOCO-I",
 /// 1996).
 int median_prediction(int left, int upper, int upper_left) {
-    const int low = std::min(left, upper), high = std::max(left, upper);
-    return std::max(low, std::min(high, left + upper - upper_left));
+    const int low = left < upper ? left : upper, high = left < upper ? upper : left;
+    const int plane = left + upper - upper_left, at_most = plane < high ? plane : high;
+    return at_most < low ? low : at_most;
 }
 
 /// The same of a value in a map; at its edges the neighbour that is there.
@@ -80,7 +83,7 @@ int predicted(std::span<const std::uint8_t> values, int columns, int column, int
 
 /// The difference of two values modulo 256, small ones of either sign as small ones without.
 char difference(int value, int predicted) {
-    const int modulo = (value - predicted) & 0xff, wrapped = modulo > 127 ? modulo - 256 : modulo;
+    const int wrapped = static_cast<std::int8_t>(value - predicted);
     return static_cast<char>(wrapped < 0 ? -2 * wrapped - 1 : 2 * wrapped);
 }
 std::uint8_t summed(int predicted, char difference) {
@@ -106,10 +109,10 @@ std::string far_differences(const DepthMap& map) {
         differences[x] = difference(map.far[x], x == 0 ? 0 : map.far[x - 1]);
     for (std::size_t start = columns; start < map.far.size(); start += columns) {
         const std::uint8_t *row = map.far.data() + start, *above = row - columns;
-        differences[start] = difference(row[0], above[0]);
+        char* to = differences.data() + start;
+        to[0] = difference(row[0], above[0]);
         for (std::size_t x = 1; x < columns; ++x)
-            differences[start + x] =
-                difference(row[x], median_prediction(row[x - 1], above[x], above[x - 1]));
+            to[x] = difference(row[x], median_prediction(row[x - 1], above[x], above[x - 1]));
     }
     return differences;
 }
@@ -131,66 +134,129 @@ std::string deflated(std::string_view plain) {
     return bytes;
 }
 
-/// An image's depth at the middle of each part of its blocks, in steps, rows from the top down.
-struct Samples {
-    Samples(std::span<const float> depth, int width, int height, const DepthMapSize& size,
-            std::span<const float> added)
-        : columns(static_cast<std::size_t>(DepthMap::kBits) * static_cast<std::size_t>(size.columns)) {
-        const auto pixels = [](std::size_t parts, int side) {
-            std::vector<std::size_t> at(parts);
-            for (std::size_t i = 0; i < parts; ++i)
-                at[i] = (2 * i + 1) * static_cast<std::size_t>(side) / (2 * parts);
-            return at;
-        };
-        const std::vector<std::size_t> across = pixels(columns, width);
-        const std::vector<std::size_t> down =
-            pixels(static_cast<std::size_t>(DepthMap::kBits) * static_cast<std::size_t>(size.rows), height);
-        std::vector<float> values(columns * down.size());
-        float* value = values.data();
-        for (const std::size_t y : down) {
-            const float* row =
-                depth.data() + (static_cast<std::size_t>(height) - 1 - y) * static_cast<std::size_t>(width);
-            for (const std::size_t x : across) *value++ = row[x];
+/// The middles of so many parts of a side, in pixels.
+std::vector<std::uint32_t> middles(int parts, int side) {
+    std::vector<std::uint32_t> middles(static_cast<std::size_t>(parts));
+    for (std::size_t i = 0; i < middles.size(); ++i)
+        middles[i] =
+            static_cast<std::uint32_t>((2 * i + 1) * static_cast<std::size_t>(side) / (2 * middles.size()));
+    return middles;
+}
+
+std::vector<std::uint32_t> padded(std::vector<std::uint32_t> columns) {
+    columns.resize((columns.size() + kAtOnce - 1) / kAtOnce * kAtOnce, columns.back());
+    return columns;
+}
+
+/// Of values that are not negative: their bits are in the same order, and the compiler may take a maximum of
+/// integers in any.
+float largest_of(std::span<const float> values, float least) {
+    auto largest = std::bit_cast<std::int32_t>(least);
+    for (const float value : values) {
+        const auto bits = std::bit_cast<std::int32_t>(value);
+        largest = bits > largest ? bits : largest;
+    }
+    return std::bit_cast<float>(largest);
+}
+
+/// Depth of the parts of a row of blocks, in steps. Its loops write to arrays of kAtOnce parts, which the
+/// compiler knows not to overlap with what they read.
+class BlockRow {
+public:
+    /// `columns` is a multiple of kAtOnce; `twice`: half steps in a value of 1.
+    BlockRow(std::size_t columns, float twice)
+        : twice_(twice),
+          added_(columns / kAddedRepeated),
+          repeated_(columns),
+          low_(columns + DepthMap::kBits),
+          high_(columns + DepthMap::kBits),
+          sum_(columns + DepthMap::kBits) {
+        for (std::vector<std::uint8_t>& row : rows_) row.resize(columns);
+    }
+
+    /// The i-th row of parts.
+    void set(std::size_t i, std::span<const float> values) { to_steps(values, rows_[i]); }
+
+    /// The nearer counts. One of these for several rows of parts and several parts.
+    void add(std::size_t i, std::span<const float> values) {
+        to_steps(values, added_);
+        const std::uint8_t* added = added_.data();
+        std::uint8_t* repeated = repeated_.data();
+        for (std::size_t x = 0; x < values.size(); ++x)
+            for (std::size_t k = 0; k < kAddedRepeated; ++k) repeated[x * kAddedRepeated + k] = added[x];
+        const std::size_t columns = repeated_.size();
+        for (std::size_t k = kAddedRepeated * i; k < kAddedRepeated * (i + 1); ++k) {
+            std::uint8_t* steps = rows_[k].data();
+            for (std::size_t x = 0; x < columns; ++x) steps[x] = larger(steps[x], repeated[x]);
         }
-        if (!added.empty()) add(values, added);
-        // By several at once: the compiler may not reorder a maximum of floats.
-        std::array<float, kParts> largest{};
-        for (std::size_t i = 0; i < values.size(); i += largest.size())
-            for (std::size_t k = 0; k < largest.size(); ++k)
-                largest[k] = values[i + k] > largest[k] ? values[i + k] : largest[k];
-        nearest = std::ranges::max(largest);
-        const float twice = nearest > 0 ? static_cast<float>(2 * DepthMap::kSteps) / nearest : 0;
-        steps.resize(values.size());
-        for (std::size_t i = 0; i < values.size(); ++i)
-            steps[i] = static_cast<std::uint8_t>((static_cast<int>(values[i] * twice) + 1) / 2);
     }
 
-    std::array<const std::uint8_t*, DepthMap::kBits> rows_of(int block_row) const {
-        std::array<const std::uint8_t*, DepthMap::kBits> rows{};
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            rows[i] = steps.data() + (static_cast<std::size_t>(block_row) * rows.size() + i) * columns;
-        return rows;
-    }
-
-    /// Its rows go from the bottom up.
-    void add(std::vector<float>& values, std::span<const float> added) const {
-        constexpr std::size_t kRepeated = DepthMap::kBits / kAddedSide;
-        const std::size_t row_size = columns / kRepeated, rows = added.size() / row_size;
-        std::vector<float> repeated(columns);
-        float* value = values.data();
-        for (std::size_t y = rows; y-- > 0;) {
-            const float* row = added.data() + y * row_size;
-            for (std::size_t x = 0; x < row_size; ++x)
-                for (std::size_t k = 0; k < kRepeated; ++k) repeated[kRepeated * x + k] = row[x];
-            for (std::size_t k = 0; k < kRepeated; ++k, value += columns)
-                for (std::size_t x = 0; x < columns; ++x)
-                    value[x] = repeated[x] > value[x] ? repeated[x] : value[x];
+    /// Fills a row of a map, whose masks are full.
+    void divide(DepthMap& map, std::size_t row) {
+        sum_columns();
+        const std::size_t first = row * static_cast<std::size_t>(map.columns);
+        for (std::size_t x = 0; x < rows_[0].size(); x += kAtOnce) {
+            std::array<std::uint8_t, kAtOnce> low, high;
+            std::array<std::uint16_t, kAtOnce> sum;
+            const std::uint8_t *l = low_.data() + x, *h = high_.data() + x;
+            const std::uint16_t* s = sum_.data() + x;
+            for (std::size_t k = 0; k < kAtOnce; ++k) {
+                low[k] = smaller(smaller(l[k], l[k + 1]), smaller(l[k + 2], l[k + 3]));
+                high[k] = larger(larger(h[k], h[k + 1]), larger(h[k + 2], h[k + 3]));
+                sum[k] = static_cast<std::uint16_t>(s[k] + s[k + 1] + s[k + 2] + s[k + 3]);
+            }
+            const std::size_t end = std::min(x / DepthMap::kBits + kAtOnce / DepthMap::kBits,
+                                             static_cast<std::size_t>(map.columns));
+            for (std::size_t i = x / DepthMap::kBits, k = 0; i < end; ++i, k += DepthMap::kBits) {
+                const auto mean = static_cast<std::uint8_t>((sum[k] + kParts / 2) / kParts);
+                map.near[first + i] = map.far[first + i] = mean;
+                // Most blocks are smooth.
+                if (high[k] - low[k] >= kEdge) divide_block(map, first + i, x + k, low[k], high[k]);
+            }
         }
     }
 
-    std::size_t columns = 0;
-    float nearest = 0;
-    std::vector<std::uint8_t> steps;
+private:
+    /// The smallest, the largest and the sum of each column of parts.
+    void sum_columns() {
+        for (std::size_t x = 0; x < rows_[0].size(); x += kAtOnce) {
+            std::array<std::uint8_t, kAtOnce> low, high;
+            std::array<std::uint16_t, kAtOnce> sum;
+            const std::uint8_t *a = rows_[0].data() + x, *b = rows_[1].data() + x, *c = rows_[2].data() + x,
+                               *d = rows_[3].data() + x;
+            for (std::size_t k = 0; k < kAtOnce; ++k) {
+                low[k] = smaller(smaller(a[k], b[k]), smaller(c[k], d[k]));
+                high[k] = larger(larger(a[k], b[k]), larger(c[k], d[k]));
+                sum[k] = static_cast<std::uint16_t>(a[k] + b[k] + c[k] + d[k]);
+            }
+            std::ranges::copy(low, low_.data() + x);
+            std::ranges::copy(high, high_.data() + x);
+            std::ranges::copy(sum, sum_.data() + x);
+        }
+    }
+
+    void to_steps(std::span<const float> values, std::vector<std::uint8_t>& steps) const {
+        for (std::size_t x = 0; x < values.size(); ++x)
+            steps[x] = static_cast<std::uint8_t>(
+                (static_cast<unsigned>(static_cast<int>(values[x] * twice_)) + 1) / 2);
+    }
+
+    void divide_block(DepthMap& map, std::size_t block, std::size_t x, int lowest, int highest) const {
+        Parts parts;
+        for (std::size_t i = 0; i < DepthMap::kBits; ++i)
+            std::copy_n(rows_[i].data() + x, DepthMap::kBits, parts.data() + i * DepthMap::kBits);
+        const std::optional<Divided> divided = divided_of(parts, lowest, highest);
+        if (!divided) return;
+        map.near[block] = divided->near;
+        map.far[block] = divided->far;
+        map.mask[block] = divided->mask;
+    }
+
+    float twice_;
+    std::array<std::vector<std::uint8_t>, DepthMap::kBits> rows_;
+    std::vector<std::uint8_t> added_, repeated_;
+    std::vector<std::uint8_t> low_, high_;
+    std::vector<std::uint16_t> sum_;
 };
 
 }  // namespace
@@ -210,45 +276,48 @@ void BlockChoice::took(std::size_t map_bytes, std::size_t frame_bytes) {
     if (wanted > pixels_ || wanted < 0.85 * pixels_) pixels_ = std::clamp(wanted * 1.05, kFinest, kCoarsest);
 }
 
-DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
-                      const DepthMapSize& size, std::span<const float> added) {
-    const Samples samples(depth, width, height, size, added);
-    DepthMap map{size.columns, size.rows, static_cast<double>(samples.nearest) / near_distance, {}, {}, {}};
-    const std::size_t blocks = size_of(size.columns, size.rows);
+DepthSamples::DepthSamples(int width, int height, const DepthMapSize& size)
+    : size_(size),
+      width_(static_cast<std::size_t>(width)),
+      columns_(padded(middles(DepthMap::kBits * size.columns, width))),
+      rows_(middles(DepthMap::kBits * size.rows, height)) {
+    values_.reserve(columns_.size() * rows_.size());
+    // From the bottom up, as rows of depth go.
+    for (std::uint32_t& row : rows_) row = static_cast<std::uint32_t>(height) - 1 - row;
+    std::ranges::reverse(rows_);
+}
+
+void DepthSamples::add(std::span<const float> depth) {
+    const std::size_t columns = columns_.size(), end = row_ + depth.size() / width_;
+    for (std::size_t i = values_.size() / columns; i < rows_.size() && rows_[i] < end; ++i) {
+        const float* row = depth.data() + (rows_[i] - row_) * width_;
+        values_.resize((i + 1) * columns);
+        const std::span<float> sampled = std::span(values_).last(columns);
+        for (std::size_t x = 0; x < columns; ++x) sampled[x] = row[columns_[x]];
+        nearest_ = largest_of(sampled, nearest_);
+    }
+    row_ = end;
+}
+
+DepthMap DepthSamples::map(double near_distance, std::span<const float> added) const {
+    assert(values_.size() == columns_.size() * rows_.size());
+    const float nearest = largest_of(added, nearest_);
+    const float twice = nearest > 0 ? static_cast<float>(2 * DepthMap::kSteps) / nearest : 0;
+    DepthMap map{size_.columns, size_.rows, static_cast<double>(nearest) / near_distance, {}, {}, {}};
+    const std::size_t blocks = size_of(size_.columns, size_.rows), columns = columns_.size();
     map.near.resize(blocks);
     map.far.resize(blocks);
     map.mask.assign(blocks, 0xffff);
-    std::vector<std::uint8_t> low(samples.columns), high(samples.columns);
-    std::vector<std::uint16_t> sum(samples.columns);
-    std::size_t block = 0;
-    for (int row = 0; row < size.rows; ++row) {
-        // Most blocks are smooth. Their columns are summed up first, many at once.
-        const auto [a, b, c, d] = samples.rows_of(row);
-        for (std::size_t x = 0; x < samples.columns; ++x) {
-            low[x] = std::min(std::min(a[x], b[x]), std::min(c[x], d[x]));
-            high[x] = std::max(std::max(a[x], b[x]), std::max(c[x], d[x]));
-            sum[x] = static_cast<std::uint16_t>(a[x] + b[x] + c[x] + d[x]);
-        }
-        for (std::size_t x = 0; x < samples.columns; x += DepthMap::kBits, ++block) {
-            const int lowest = std::min(std::min(low[x], low[x + 1]), std::min(low[x + 2], low[x + 3]));
-            const int highest = std::max(std::max(high[x], high[x + 1]), std::max(high[x + 2], high[x + 3]));
-            const int all = sum[x] + sum[x + 1] + sum[x + 2] + sum[x + 3];
-            map.near[block] = map.far[block] = static_cast<std::uint8_t>((all + kParts / 2) / kParts);
-            if (highest - lowest < kEdge) continue;
-            Parts parts;
-            constexpr std::size_t kSide = DepthMap::kBits;
-            for (std::size_t i = 0; i < kSide; ++i) {
-                parts[i] = a[x + i];
-                parts[kSide + i] = b[x + i];
-                parts[2 * kSide + i] = c[x + i];
-                parts[3 * kSide + i] = d[x + i];
-            }
-            const std::optional<Divided> divided = divided_of(parts, lowest, highest);
-            if (!divided) continue;
-            map.near[block] = divided->near;
-            map.far[block] = divided->far;
-            map.mask[block] = divided->mask;
-        }
+    // Two rows of parts lie in one that is added, whose rows go from the bottom up.
+    const std::size_t added_columns = static_cast<std::size_t>(kAddedSide * size_.columns);
+    BlockRow row(columns, twice);
+    for (std::size_t y = 0; y < rows_.size(); y += DepthMap::kBits) {
+        for (std::size_t i = 0; i < DepthMap::kBits; ++i)
+            row.set(i, std::span(values_).subspan((rows_.size() - 1 - y - i) * columns, columns));
+        for (std::size_t i = 0; i < kAddedSide && !added.empty(); ++i)
+            row.add(
+                i, added.subspan(added.size() - (y / kAddedRepeated + i + 1) * added_columns, added_columns));
+        row.divide(map, y / DepthMap::kBits);
     }
     return map;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -31,7 +32,7 @@ struct DepthMapSize {
 };
 /// With blocks of so many pixels a side, or of more where there would be over kMostBlocks a side.
 DepthMapSize depth_map_size(int width, int height, double pixels);
-inline constexpr int kMostBlocks = 160;
+inline constexpr int kMostBlocks = 128;
 
 /// Chooses the size of blocks, by what maps before took, so that a map takes up to kMostOfFrame of the bytes
 /// of its frame, or kEnough bytes, below which a warp is worse than none.
@@ -45,13 +46,28 @@ private:
     double pixels_ = 8;
 };
 
-/// `depth` of `width` · `height` pixels, rows from the bottom up, is near_distance / distance along the view,
-/// and 0 at infinity (math::reversed_clip_from_view). Its pixels may be larger or smaller than blocks are.
-/// `added`: the same of what it has not, in kAddedSide samples a side for each block; the nearer counts.
-/// Empty: none.
-DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
-                      const DepthMapSize& size, std::span<const float> added = {});
 inline constexpr int kAddedSide = 2;
+
+/// The depth of an image of `width` · `height` pixels at the middle of each part of its blocks. Depth is
+/// near_distance / distance along the view, and 0 at infinity (math::reversed_clip_from_view). Pixels may be
+/// larger or smaller than parts.
+class DepthSamples {
+public:
+    DepthSamples(int width, int height, const DepthMapSize& size);
+    /// The next rows, from the bottom up: an image may come in strips, which stay in the processor's cache.
+    void add(std::span<const float> depth);
+    /// Once all rows have come. `added`: the depth of what the image's has not, in kAddedSide samples a
+    /// side for each block, rows from the bottom up; the nearer counts. Empty: none.
+    DepthMap map(double near_distance, std::span<const float> added = {}) const;
+
+private:
+    DepthMapSize size_;
+    std::size_t width_;
+    std::vector<std::uint32_t> columns_, rows_;  // pixels with samples, padded; rows from the bottom up
+    std::vector<float> values_;                  // of rows_ that have come
+    float nearest_ = 0;
+    std::size_t row_ = 0;  // the next one
+};
 
 /// In the format of zlib (RFC 1950): for each block the difference of its `far` from what its neighbours make
 /// expect; a bit for each block, set if an edge goes through it; and of those blocks the difference of `near`

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <iostream>
 #include <numbers>
 #include <vector>
@@ -30,7 +31,7 @@ double median(std::vector<double> values) {
 }
 
 struct Costs {
-    std::vector<double> draw_ms, read_ms, encode_ms, bytes, depth_encode_ms, depth_bytes, blocks;
+    std::vector<double> draw_ms, cpu_ms, read_ms, encode_ms, bytes, depth_encode_ms, depth_bytes, blocks;
 };
 
 }  // namespace
@@ -54,9 +55,11 @@ int main(int count, char** arguments) {
             job.output = plan::RenderJob::Output::ycbcr_420;
             if (depth) job.depth_size = warp::depth_map_size(view.width, view.height, blocks.pixels());
             Clock::time_point start = Clock::now();
+            const auto cpu_start = std::clock();
             while (!renderer.step(job)) {
             }
             costs.draw_ms.push_back(milliseconds_since(start));
+            costs.cpu_ms.push_back(static_cast<double>(std::clock() - cpu_start) * 1e3 / CLOCKS_PER_SEC);
             costs.read_ms.push_back(job.stats.readback_ms);
             start = Clock::now();
             const std::size_t bytes = job.planes.bytes.empty() ? encoder.encode(job.image, 75, true).size()
@@ -71,6 +74,16 @@ int main(int count, char** arguments) {
             costs.blocks.push_back(job.depth.columns * job.depth.rows);
             blocks.took(map_bytes, bytes);
         }
+    // Of a frame with depth than of the one before, without.
+    const auto more = [&](auto of) {
+        std::vector<double> pairs;
+        for (std::size_t i = 0; i < with.draw_ms.size(); ++i)
+            pairs.push_back((with.*of)[i] - (without.*of)[i]);
+        return median(pairs);
+    };
+    std::printf(
+        "depth takes %.2f ms of drawing (%.2f of them reading; %.2f of all CPUs) and %.2f of encoding\n",
+        more(&Costs::draw_ms), more(&Costs::read_ms), more(&Costs::cpu_ms), median(with.depth_encode_ms));
     std::printf(
         "draw %.2f ms, with depth %.2f; of it read %.2f ms, with depth %.2f; JPEG %.2f ms, %.0f bytes\n",
         median(without.draw_ms), median(with.draw_ms), median(without.read_ms), median(with.read_ms),

@@ -2,8 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "depth_map_of.hpp"
 
 using namespace vrut::warp;
 
@@ -90,6 +93,26 @@ TEST_CASE("what an image's depth has not counts, too, where it is nearer") {
                   doctest::Approx(is_before ? 0.4 / kNear : alone.far[block] / 255.0 * alone.scale)
                       .epsilon(0.01));
         }
+}
+
+TEST_CASE("an image that comes in strips has the map of one that comes at once") {
+    constexpr int kWidth = 93, kHeight = 51;
+    const std::vector<float> depth =
+        depth_of(kWidth, kHeight, [](int x, int y) { return (3 * x + 7 * y) % 11; });
+    for (const double pixels : {3.0, 4.0, 9.5}) {
+        const DepthMapSize size = depth_map_size(kWidth, kHeight, pixels);
+        const DepthMap at_once = depth_map_of(depth, kWidth, kHeight, kNear, size);
+        for (const int rows : {1, 7, 50}) {
+            CAPTURE(pixels);
+            CAPTURE(rows);
+            DepthSamples samples(kWidth, kHeight, size);
+            for (int first = 0; first < kHeight; first += rows)
+                samples.add(std::span(depth).subspan(
+                    static_cast<std::size_t>(first * kWidth),
+                    static_cast<std::size_t>(std::min(rows, kHeight - first) * kWidth)));
+            CHECK(samples.map(kNear) == at_once);
+        }
+    }
 }
 
 TEST_CASE("images of any size have at most kMostBlocks blocks a side") {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "depth_map_of.hpp"
 #include "io/image/image_file.hpp"
 #include "io/texture_writer.hpp"
 #include "warp/warp.hpp"

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "depth_map_of.hpp"
+
 using namespace vrut;
 using namespace vrut::warp;
 

@@ -14,8 +14,8 @@ bool is_clear(const scene::Material& material, const plan::DrawItem& item) {
 
 }  // namespace
 
-const std::vector<float>& DepthPass::read(const plan::DrawLists& lists, GpuScene& scene,
-                                          const glm::dmat4& clip_from_view, int width, int height) {
+void DepthPass::draw(const plan::DrawLists& lists, GpuScene& scene, const glm::dmat4& clip_from_view,
+                     int width, int height) {
     if (!target_ || target_->width() != width || target_->height() != height) target_.emplace(width, height);
     target_->bind();
     set_scissor({});
@@ -33,8 +33,11 @@ const std::vector<float>& DepthPass::read(const plan::DrawLists& lists, GpuScene
             apply(state.for_item(item));
             draw_triangles(geometry, not_counted);
         }
-    depth_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    target_->read_depth(depth_);
+}
+
+const std::vector<float>& DepthPass::read() {
+    depth_.resize(static_cast<std::size_t>(target_->width()) * static_cast<std::size_t>(target_->height()));
+    target_->read_depth(0, depth_);
     return depth_;
 }
 

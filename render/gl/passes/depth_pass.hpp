@@ -15,11 +15,12 @@ namespace vrut::gl {
 class DepthPass {
 public:
     explicit DepthPass(Programs& programs) : programs_(programs) {}
-    /// Returns `width` · `height` samples, at the middle of equal parts of the image, rows from the bottom
-    /// up: the nearest of them there, even behind what is opaque; 0 where there is none. They stay until the
-    /// next call.
-    const std::vector<float>& read(const plan::DrawLists& lists, GpuScene& scene,
-                                   const glm::dmat4& clip_from_view, int width, int height);
+    /// Draws `width` · `height` samples, at the middle of equal parts of the image.
+    void draw(const plan::DrawLists& lists, GpuScene& scene, const glm::dmat4& clip_from_view, int width,
+              int height);
+    /// What was drawn last, rows from the bottom up: the nearest of the items, even behind what is opaque; 0
+    /// where there is none. Stays until the next call.
+    const std::vector<float>& read();
 
 private:
     Programs& programs_;
