@@ -6,9 +6,12 @@
 #include <string_view>
 
 #include "base/files.hpp"
+#include "base/html.hpp"
 #include "engine/images.hpp"
 
 namespace vrut::server::measure {
+
+using base::escaped;
 
 namespace {
 
@@ -50,30 +53,6 @@ void write_paragraphs(std::ostream& out, const std::vector<std::string>& sentenc
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            case '\'':
-                result += "&#39;";
-                break;
-            default:
-                result += c;
-        }
-    return result;
-}
 
 std::string inlined(std::string svg, const std::string& name) {
     svg.erase(0, svg.find("<svg"));

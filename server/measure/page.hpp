@@ -14,8 +14,6 @@ struct PageHead {
     std::vector<std::string> sentences;  ///< of the machine, the renderer, the version
 };
 
-/// Text as HTML has it, in elements and attributes.
-std::string escaped(const std::string& text);
 /// An SVG file of gnuplot's as a part of a page: its ids begin with `name`, and it names no address.
 std::string inlined(std::string svg, const std::string& name);
 

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/html.hpp"
 #include "report/text.hpp"
 
 namespace vrut::server::report {
 
+using base::escaped;
 using protocol::MeasureKind;
 using protocol::OtherView;
 using protocol::ReportedState;

@@ -11,7 +11,5 @@ std::string shortest(double value);
 std::string fixed(double value, int digits);
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);
-/// `text` as text of HTML, and of a quoted attribute's value.
-std::string escaped(std::string_view text);
 
 }  // namespace vrut::server::report
