@@ -66,7 +66,13 @@ export class Bar {
     });
     store.subscribe(({ state }) => [state?.scene?.file, !state], () => this.#trail.forget());
     store.subscribe(({ state }) => [state?.camera], (camera) => camera && this.#trail.follow(camera));
-    store.subscribe(({ state }) => [state?.scene], () => this.#open(null));
+    // The whole state comes anew with each connection, and mostly with the scene that the strip is of.
+    let shown = '';
+    store.subscribe(({ state }) => [state?.scene], (scene) => {
+      const before = shown;
+      shown = JSON.stringify(scene ?? null);
+      if (shown !== before) this.#open(null);
+    });
     store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes, state?.swings, state?.navigation],
       () => this.#showStrip());
     store.subscribe(({ state, header, prepares, preparedCamera }) =>

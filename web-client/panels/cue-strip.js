@@ -44,18 +44,20 @@ export function cueStrip({ store, commands, pictures, presentation }) {
       },
     };
   });
+  const presenter = element('div', { className: 'presenter' }, card);
   const before = button(say('cues.previous'), () => presentation.step(-1), { icon: 'open', only: true });
   before.classList.add('before');
   const after = button(say('cues.next'), () => presentation.step(1), { icon: 'open', only: true });
+  presenter.append(element('div', { className: 'cues' }, before, list.element, after));
   return {
-    content: [element('div', { className: 'presenter' },
-      card, element('div', { className: 'cues' }, before, list.element, after))],
+    content: [presenter],
     show() {
       const { cues, cue } = state();
       const { prepares, preparedCamera } = store.now;
       const shown = cue?.name ?? '';
       const following = cueAfter(state(), 1);
       words.textContent = cues[prepares ?? shown]?.text ?? '';
+      presenter.classList.toggle('wordless', words.textContent === '');
       next.hidden = prepares !== null || following === undefined;
       card.hidden = Object.keys(cues).length === 0;
       prepare.ariaPressed = String(prepares !== null);

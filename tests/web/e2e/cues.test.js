@@ -128,6 +128,19 @@ for (const [name, size] of Object.entries(SIZES)) {
       }
     });
 
+    test('after a lost connection, the presenter goes on where they were', async () => {
+      const { connections } = presenter.wire;
+      await page.evaluate(() => window.sockets.at(-1).close());
+      await until('another connection', () => presenter.wire.connections > connections && state()?.cue);
+      await presenter.glance();
+      await chip('Arrival', true).waitFor();
+      await page.keyboard.press('PageDown');
+      await chip('Close', true).waitFor();
+      await presenter.screenshot(`cues-${name}-again`);
+      await page.keyboard.press('PageUp');
+      await chip('Arrival', true).waitFor();
+    });
+
     test('a cue is prepared on a picture that nobody else sees, and taken', async () => {
       const seen = structuredClone(state());
       const image = page.locator('#prepare img');

@@ -25,6 +25,7 @@ function rememberSockets() {
     constructor(...about) {
       super(...about);
       window.sockets.push(this);
+      if (window.keptGrants) window.keptGrants = []; // a connection's grants are its own
     }
 
     send(text) {
