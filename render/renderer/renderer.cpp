@@ -142,10 +142,11 @@ struct Renderer::Impl {
 
 void Renderer::Impl::read_depth(plan::RenderJob& job, const gl::Framebuffer& target) {
     const Clock::time_point start = Clock::now();
-    // A strip that is sampled at once is still in the processor's cache.
+    // A strip that is sampled at once is still in the processor's cache. A graphics card answers each read
+    // late.
     constexpr int kStrip = 1 << 14;
     warp::DepthSamples samples(target.width(), target.height(), job.depth_size);
-    const int rows = std::max(kStrip / target.width(), 1);
+    const int rows = context.software() ? std::max(kStrip / target.width(), 1) : target.height();
     for (int first = 0; first < target.height(); first += rows) {
         const int count = std::min(rows, target.height() - first);
         depth.resize(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(count));
