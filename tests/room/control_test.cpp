@@ -160,6 +160,9 @@ TEST_CASE("a refused message changes nothing, and not who steers either") {
     TestClient client(server.port()), host(server.port());
     client.join();
     host.join("host");
+    // The first view is fitted into this size; walls that follow gently would change the state for a while
+    // yet.
+    client.send({{"type", "patch"}, {"patch", {{"comfort", {{"on", false}}}}}});
     client.send(
         {{"type", "resize"}, {"id", client.next_id()}, {"width", 300}, {"height", 200}, {"pixelRatio", 1}});
     const std::int64_t revision = client.wait_for("ok")["revision"];
