@@ -142,8 +142,7 @@ struct Renderer::Impl {
 
 void Renderer::Impl::read_depth(plan::RenderJob& job, const gl::Framebuffer& target) {
     const Clock::time_point start = Clock::now();
-    // A strip that is sampled at once is still in the processor's cache. A graphics card answers each read
-    // late.
+    // A strip is still in the processor's cache when it is sampled. With a graphics card, each read waits.
     constexpr int kStrip = 1 << 14;
     warp::DepthSamples samples(target.width(), target.height(), job.depth_size);
     const int rows = context.software() ? std::max(kStrip / target.width(), 1) : target.height();

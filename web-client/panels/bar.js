@@ -66,7 +66,7 @@ export class Bar {
     });
     store.subscribe(({ state }) => [state?.scene?.file, !state], () => this.#trail.forget());
     store.subscribe(({ state }) => [state?.camera], (camera) => camera && this.#trail.follow(camera));
-    // The whole state comes anew with each connection, and mostly with the scene that the strip is of.
+    // Each connection sends the whole state again. The strip stays open if the scene in it is the same.
     let shown = '';
     store.subscribe(({ state }) => [state?.scene], (scene) => {
       const before = shown;
