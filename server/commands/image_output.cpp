@@ -34,9 +34,9 @@ fs::path numbered(const fs::path& output, std::size_t i) {
 
 ImageOutput::ImageOutput(Options options) : options_(std::move(options)) {
     if (options_.shows_progress) progress_ = observe::loading_bar(options_.path.filename().string());
-    if (is_film(options_.path))
-        film_.emplace(options_.path, options_.width, options_.height, options_.images_per_second);
-    if (film_ || options_.are_numbered) stop_.emplace();
+    const bool has_film = is_film(options_.path);
+    if (has_film || options_.are_numbered) stop_.emplace();  // before there is a file to remove
+    if (has_film) film_.emplace(options_.path, options_.width, options_.height, options_.images_per_second);
 }
 
 void ImageOutput::add(scene::Image& image) {
