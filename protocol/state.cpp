@@ -214,6 +214,11 @@ std::string kept_changes(const State& starting, const State& state) {
     return dump(changes);
 }
 
+bool has_equal_kept(const State& a, const State& b) {
+    return a.views == b.views && a.markers == b.markers && a.measures == b.measures && a.unit == b.unit &&
+           a.cues == b.cues && a.nodes == b.nodes;
+}
+
 tl::expected<CameraOverlay, Error> parse_camera(std::string_view text) {
     return or_error([&] { return read_struct<CameraOverlay>(parse_strictly(text), "camera"); });
 }
@@ -424,13 +429,16 @@ std::shared_ptr<const StateDocument> StateDocument::for_hosts() const {
     return document;
 }
 
+const Json& StateDocument::section(std::string_view name) const {
+    static const Json none;
+    const auto found = std::ranges::find(sections_, name,
+                                         [](const auto& section) { return std::string_view(section->name); });
+    return found == sections_.end() ? none : (*found)->json;
+}
+
 bool StateDocument::has_scene_of(const StateDocument& other) const {
-    const auto scene = [](const StateDocument& document) {
-        return *std::ranges::find(document.sections_, "scene",
-                                  [](const auto& section) { return section->name; });
-    };
-    const auto own = scene(*this), others = scene(other);
-    return own == others || own->json == others->json;
+    const Json &own = section("scene"), &others = other.section("scene");
+    return &own == &others || own == others;
 }
 
 Json StateDocument::json() const {

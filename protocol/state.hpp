@@ -377,6 +377,8 @@ tl::expected<Patch, Error> parse_patch(std::string_view text);
 /// The text of the patch that leads from `starting` to what is kept of a scene in `state`: its views,
 /// markers, measures, unit, cues and nodes. "{}" where they are the same.
 std::string kept_changes(const State& starting, const State& state);
+/// Whether what is kept of a scene is equal in both.
+bool has_equal_kept(const State& a, const State& b);
 
 /// The document of a state, as clients see it.
 std::shared_ptr<const nlohmann::json> document_of(const State& state);
@@ -424,6 +426,8 @@ public:
     std::string encode() const;
     /// The document alone.
     nlohmann::json json() const;
+    /// A member of the document; null where there is none.
+    const nlohmann::json& section(std::string_view name) const;
     /// The `patch` message that leads from an earlier document to this one; `by` may be empty.
     std::string encode_patch_from(const StateDocument& earlier, const std::string& by) const;
     /// Of the same scene: else the difference may be as large as the document, and that is sent.

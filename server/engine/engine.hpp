@@ -241,10 +241,7 @@ private:
     SceneLookup lookup_;
     RecordingWriter recordings_;
     ChangeKeeper change_keeper_;
-    /// What is kept, or on its way.
-    protocol::SharedMap<protocol::ViewState> kept_views_;
-    protocol::SharedMap<protocol::Marker> kept_markers_;
-    protocol::SharedMap<protocol::NodeOverride> kept_nodes_;
+    protocol::State kept_;  ///< the last whose changes are kept, or on their way
     FairQueue waiting_;
     base::Watchdog watchdog_;
     std::atomic<bool> draws_{false};

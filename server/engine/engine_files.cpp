@@ -39,10 +39,7 @@ std::optional<base::Clock::time_point> Engine::files_due() const {
     return first;
 }
 
-bool Engine::has_changes_to_keep() const {
-    const protocol::State& state = room_->state();
-    return !(state.views == kept_views_ && state.markers == kept_markers_ && state.nodes == kept_nodes_);
-}
+bool Engine::has_changes_to_keep() const { return !protocol::has_equal_kept(room_->state(), kept_); }
 
 void Engine::check_changes() {
     const base::Clock::time_point now = base::Clock::now();
@@ -58,12 +55,7 @@ void Engine::keep_changes() {
 }
 
 /// What stands now is kept already.
-void Engine::note_kept() {
-    const protocol::State& state = room_->state();
-    kept_views_ = state.views;
-    kept_markers_ = state.markers;
-    kept_nodes_ = state.nodes;
-}
+void Engine::note_kept() { kept_ = room_->state(); }
 
 void Engine::check_files() {
     const base::Clock::time_point now = base::Clock::now();

@@ -14,6 +14,10 @@ const CHANGES = {
 };
 const GIVE_BACK = { views: null, markers: null, nodes: null };
 
+/** What `wanted` names, of `all`. */
+const subset = (all, wanted) => (wanted !== null && typeof wanted === 'object' && !Array.isArray(wanted) && all
+  ? Object.fromEntries(Object.keys(wanted).map((name) => [name, subset(all[name], wanted[name])])) : all);
+
 const kept = ({ views, markers, nodes }) => ({ views, markers, nodes });
 
 describe('what is kept of a scene', () => {
@@ -48,6 +52,24 @@ describe('what is kept of a scene', () => {
 
     const third = await start(t, state);
     assert.deepEqual(kept(third.client.state), file);
+  });
+
+  test('each of its members is kept where nothing else changes', async (t) => {
+    const state = temporaryFolder();
+    const pick = (point) => ({ node: 4, snap: 'point', points: [point] });
+    const alone = [
+      { views: { front: { eye: [0, 1, 9], focus: [0, 0, 0] } } }, { markers: { bump: { point: [1, 2, 3] } } },
+      { measures: { gap: { kind: 'distance', picks: [pick([-0.5, 0, 0]), pick([0.5, 0, 0])] } } },
+      { unit: { shown: 'm' } }, { cues: { Door: { text: 'first' } } }, { cues: { Door: { text: 'then' } } }, { nodes: { 4: { active: false } } },
+    ];
+    for (const patch of alone) {
+      const { server, client } = await start(t, state);
+      await client.patch(patch);
+      await server.stop();
+      const later = await start(t, state);
+      assert.deepEqual(subset(later.client.state, patch), patch);
+      await later.server.stop();
+    }
   });
 
   test('survives another scene, and the first one can be opened again', async (t) => {
