@@ -9,10 +9,10 @@ namespace vrut::protocol {
 
 namespace {
 
-const Json& section_of(const Json& state, const char* name) {
+const Json& section_of(const StateDocument& document, const char* name) {
     static const Json none = Json::object();
-    const auto found = state.find(name);
-    return found == state.end() ? none : read_object(*found, name);
+    const Json& section = document.section(name);
+    return section.is_null() ? none : read_object(section, name);
 }
 
 /// Entries by their `order`, then those without one, by name.
@@ -34,7 +34,7 @@ std::optional<CameraOverlay> camera_in(const Json& view) {
     return camera ? std::optional(*camera) : std::nullopt;
 }
 
-ReportedState read_reported(const Json& state) {
+ReportedState read_reported(const StateDocument& state) {
     ReportedState reported;
     const Json& scene = section_of(state, "scene");
     for (const char* member : {"name", "file"})
@@ -59,7 +59,7 @@ ReportedState read_reported(const Json& state) {
 }  // namespace
 
 tl::expected<ReportedState, Error> reported_state(const StateDocument& document) {
-    return or_error([&] { return read_reported(document.json()); });
+    return or_error([&] { return read_reported(document); });
 }
 
 }  // namespace vrut::protocol

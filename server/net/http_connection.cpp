@@ -363,7 +363,7 @@ private:
 
     // --- reports
 
-    static constexpr std::size_t kMostReports = 2;
+    static constexpr std::size_t kMostReports = 2, kMostReportsSent = 8;
 
     /// What a report has of the state; none: the request is rejected.
     std::optional<protocol::ReportedState> reported() {
@@ -397,21 +397,34 @@ private:
     }
 
     void send_report(const HttpRequest&) {
+        if (registry_.reports >= kMostReports || registry_.reports_sent >= kMostReportsSent)
+            return send(rejection(http::status::service_unavailable,
+                                  "too many reports are being made: try again later"));
         auto state = reported();
         if (!state) return;
         HttpResponse response = file_response("text/html; charset=utf-8", "report.html");
         if (head_only_) return send(std::move(response));
-        if (registry_.reports >= kMostReports)
-            return send(rejection(http::status::service_unavailable,
-                                  "too many reports are being made: try again later"));
         deadline_ = base::Clock::time_point::max();  // it takes as long as it takes
         draw_report(
             *std::move(state), room_, registry_.reports,
             [self = shared_from_this()] { return !self->is_gone(); },
-            [self = shared_from_this(), response = std::move(response)](std::string html) mutable {
-                response.body = std::make_shared<const std::string>(std::move(html));
+            [self = shared_from_this(),
+             response = std::move(response)](std::optional<std::string> html) mutable {
+                if (!html)
+                    return self->send(rejection(http::status::service_unavailable,
+                                                "another scene is shown meanwhile: try again"));
+                response.body = self->counted(*std::move(html));
                 self->send(std::move(response));
             });
+    }
+
+    /// Counts as being sent as long as it is kept.
+    std::shared_ptr<const std::string> counted(std::string html) {
+        ++registry_.reports_sent;
+        return {new std::string(std::move(html)), [&registry = registry_](const std::string* text) {
+                    --registry.reports_sent;
+                    delete text;
+                }};
     }
 
     /// The peer has closed, or the server stops.

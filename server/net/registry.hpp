@@ -64,7 +64,8 @@ struct ConnectionRegistry {
     std::function<std::optional<std::string>()> why_unready;
     /// For those who monitor it; empty: it has nothing to do with NATS, or shares its room with no server.
     std::function<bool()> nats_connected, room_owner;
-    std::size_t reports = 0;  ///< being made
+    std::size_t reports = 0;       ///< being made
+    std::size_t reports_sent = 0;  ///< being sent: they may be large
     std::set<Connection*> connections;
     std::int64_t next_client = 1;
     bool stopping = false;

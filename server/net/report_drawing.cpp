@@ -31,10 +31,11 @@ std::int64_t now_ms() {
 class ReportDrawing : public std::enable_shared_from_this<ReportDrawing> {
 public:
     ReportDrawing(protocol::ReportedState state, std::shared_ptr<ServedRoom> room, std::size_t& running,
-                  std::function<bool()> goes_on, std::function<void(std::string)> done)
+                  std::function<bool()> goes_on, std::function<void(std::optional<std::string>)> done)
         : state_(std::move(state)),
           wanted_(report::pictures_of(state_)),
           room_(std::move(room)),
+          document_(room_->document.newest()),
           running_(running),
           goes_on_(std::move(goes_on)),
           done_(std::move(done)) {
@@ -46,6 +47,7 @@ public:
 
     void draw_next() {
         if (!goes_on_()) return;
+        if (!document_->has_scene_of(*room_->document.newest())) return done_(std::nullopt);
         if (pictures_.size() == wanted_.size() || bytes_ >= report::kMostPictureBytes)
             return done_(report::html(state_, pictures_, now_ms()));
         room_->pictures.draw(
@@ -62,9 +64,10 @@ private:
     protocol::ReportedState state_;
     std::vector<protocol::OtherView> wanted_;
     std::shared_ptr<ServedRoom> room_;
+    std::shared_ptr<const protocol::StateDocument> document_;  ///< whose scene the pictures show
     std::size_t& running_;
     std::function<bool()> goes_on_;
-    std::function<void(std::string)> done_;
+    std::function<void(std::optional<std::string>)> done_;
     std::vector<report::Picture> pictures_;
     std::size_t bytes_ = 0;
 };
@@ -72,7 +75,7 @@ private:
 }  // namespace
 
 void draw_report(protocol::ReportedState state, std::shared_ptr<ServedRoom> room, std::size_t& running,
-                 std::function<bool()> goes_on, std::function<void(std::string html)> done) {
+                 std::function<bool()> goes_on, std::function<void(std::optional<std::string> html)> done) {
     std::make_shared<ReportDrawing>(std::move(state), std::move(room), running, std::move(goes_on),
                                     std::move(done))
         ->draw_next();

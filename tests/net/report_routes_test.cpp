@@ -1,7 +1,10 @@
 // /report.html and /report.csv: who gets them, and what they cost.
 #include <doctest/doctest.h>
 
+#include <list>
+
 #include "raw_connection.hpp"
+#include "temporary_folder.hpp"
 
 using namespace vrut;
 using namespace vrut::server::net;
@@ -19,7 +22,8 @@ std::string get(const std::string& path) { return "GET " + path + " HTTP/1.1\r\n
 
 /// A server with so many notes; home adds a picture to theirs.
 struct WithNotes {
-    explicit WithNotes(int notes, const FakeRenderer& renderer = {}) : server(renderer) {
+    explicit WithNotes(int notes, const FakeRenderer& renderer = {}, const ServerOptions& options = {})
+        : server(renderer, options) {
         TestClient client(server.port());
         client.join();
         Json markers = Json::object();
@@ -73,6 +77,38 @@ TEST_CASE("a report draws its pictures one after the other, and keeps none of th
     CHECK(eventually([&] { return notes.server.metrics().pictures_held <= 1; }));
     CHECK(notes.answer("/report.html").status == 200);
     CHECK(eventually([&] { return notes.server.metrics().pictures_held <= 1; }));
+}
+
+TEST_CASE("a report is of one scene") {
+    const TemporaryFolder folder;
+    folder.write("other.vrut",
+                 "vrut-text 1\ngeometry 1 vertices 3 -9 -1 0  1 -1 0  0 1 1 triangles 1 0 "
+                 "1 2 end\nnode 1 \"Other\" geometry geometry 1 end\n");
+    ServerOptions options;
+    options.library = server::scenes::SceneLibrary(folder.path());
+    WithNotes notes(40, {.takes = 5ms}, options);
+    const std::uint64_t before = notes.server.metrics().frames_encoded;
+    RawConnection reader(notes.server.port());
+    reader.send(get("/report.html"));
+    REQUIRE(eventually([&] { return notes.server.metrics().frames_encoded >= before + 2; }));
+    TestClient client(notes.server.port());
+    client.join();
+    client.send({{"type", "open"}, {"id", client.next_id()}, {"scene", "other.vrut"}});
+    const HttpAnswer answer = reader.answer();
+    CHECK(answer.status == 503);
+    CHECK(answer.body.find("another scene is shown meanwhile: try again") != std::string::npos);
+}
+
+TEST_CASE("eight reports at most wait for those who do not read them") {
+    WithNotes notes(40, {.noise = true});
+    std::list<RawConnection> readers;
+    for (int i = 0; i < 8; ++i) {
+        readers.emplace_back(notes.server.port()).send(get("/report.html"));
+        REQUIRE(readers.back().receive(12, 30s) == "HTTP/1.1 200");
+    }
+    CHECK(notes.answer("/report.html").status == 503);
+    readers.pop_front();
+    CHECK(eventually([&] { return notes.answer("/report.html", "HEAD").status == 200; }));
 }
 
 TEST_CASE("two reports at most are made at once, and who goes away makes room") {
