@@ -284,16 +284,19 @@ std::uint64_t Scene::triangle_count() const {
     return count;
 }
 
+NodeState file_state(const Node& node) {
+    NodeState state;
+    state.active = node.active;
+    state.matrix = node.matrix;
+    if (const auto* data = std::get_if<SwitchData>(&node.data)) state.active_child = data->active_child;
+    if (const auto* data = std::get_if<GeometryData>(&node.data)) state.material = data->material;
+    return state;
+}
+
 std::vector<NodeState> file_states(const Scene& scene) {
     std::vector<NodeState> states;
     states.reserve(scene.nodes().size());
-    for (const Node& node : scene.nodes()) {
-        NodeState& state = states.emplace_back();
-        state.active = node.active;
-        state.matrix = node.matrix;
-        if (const auto* data = std::get_if<SwitchData>(&node.data)) state.active_child = data->active_child;
-        if (const auto* data = std::get_if<GeometryData>(&node.data)) state.material = data->material;
-    }
+    for (const Node& node : scene.nodes()) states.push_back(file_state(node));
     return states;
 }
 

@@ -287,6 +287,8 @@ struct NodeState {
     bool operator==(const NodeState&) const = default;
 };
 
+/// As its file has it.
+NodeState file_state(const Node& node);
 /// One for each of the scene's nodes.
 std::vector<NodeState> file_states(const Scene& scene);
 

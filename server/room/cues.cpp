@@ -27,6 +27,8 @@ void lay_cue(const protocol::CueState& cue, protocol::State& state) {
     state.section_box = cue.section_box;
 }
 
+std::string no_cue_named(const std::string& name) { return "there is no cue '" + name + "'"; }
+
 std::vector<Error> problems_of(const std::string& name, const protocol::CueState& cue,
                                const protocol::State& starting, const scene::PlacedScene& placed) {
     const std::string path = "'cues." + name.substr(0, 40) + ".";

@@ -241,6 +241,9 @@ private:
     };
     /// With a cue and a camera laid over what is shown.
     tl::expected<Laid, protocol::Error> laid(const protocol::OtherView& other);
+    /// As use_nodes(). Pictures of the same nodes have one scene as long as they wait.
+    std::optional<protocol::Error> use_laid_nodes(protocol::State& next,
+                                                  std::shared_ptr<const scene::PlacedScene>& placed);
     plan::View view_of_laid(const Laid& laid) const;
 
     /// Does what a message does; whether it was accepted.
@@ -437,6 +440,10 @@ private:
     std::int64_t changed_by_since_ = 0;
     std::vector<Answer> answers_;
     std::vector<PictureOrder> orders_;
+    /// As cues have it that pictures are drawn of; gone with the pictures.
+    std::vector<
+        std::pair<protocol::SharedMap<protocol::NodeOverride>, std::weak_ptr<const scene::PlacedScene>>>
+        laid_scenes_;
     std::map<std::string, protocol::Pointed> pointed_;  ///< to be sent, by client
     std::map<std::string, Pointing> pointings_;         ///< by client
     std::map<std::string, Client> clients_;

@@ -13,17 +13,8 @@ namespace code = protocol::error_code;
 
 namespace {
 
-/// To where a cue is seen from, with `camera` laid over that.
-protocol::Fly flight_to(const CueState& cue, const protocol::CameraOverlay& camera) {
-    protocol::CameraOverlay pose{
-        {}, cue.camera.eye, cue.camera.focus, cue.camera.up, cue.camera.center, cue.camera.fov};
-    if (camera.node) pose = {camera.node, {}, {}, {}, {}, {}};
-    if (camera.eye) pose.eye = camera.eye;
-    if (camera.focus) pose.focus = camera.focus;
-    if (camera.up) pose.up = camera.up;
-    if (camera.center) pose.center = camera.center;
-    if (camera.fov) pose.fov = camera.fov;
-    return {{{cue.ms, pose}}, cue.easing};
+protocol::Fly flight_to(const scene::Camera& camera, const CueState& cue) {
+    return {{{cue.ms, {{}, camera.eye, camera.focus, camera.up, camera.center, camera.fov}}}, cue.easing};
 }
 
 }  // namespace
@@ -37,7 +28,7 @@ std::optional<std::string> Room::cue_named(const Received& received, const proto
         return refuse(code::bad_message, "a cue is named either by 'name' or by 'step'");
     if (cue.name) {
         if (state_.cues->contains(*cue.name)) return cue.name;
-        return refuse(code::unknown_cue, "there is no cue '" + *cue.name + "'");
+        return refuse(code::unknown_cue, no_cue_named(*cue.name));
     }
     const std::vector<std::string> names = protocol::names_in_order(state_.cues);
     const auto shown = state_.cue ? std::ranges::find(names, state_.cue->name) : names.end();
@@ -52,9 +43,13 @@ void Room::apply(const Received& received, const protocol::Cue& message) {
     if (!name) return;
     CueState cue = state_.cues->at(*name);
     cue.ms = message.ms.value_or(cue.ms);
-    const protocol::Fly fly = flight_to(cue, message.camera);
-    if (const auto path = flight_path(fly, camera(), *scene_); !path)
-        return reject(received, path.error().code.c_str(), path.error().message);
+    scene::Camera aim = camera_of(cue);
+    if (message.camera != protocol::CameraOverlay{}) {
+        const auto laid = this->laid({message.camera, name});
+        if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);
+        aim = camera_of(laid->state.camera);
+    }
+    const protocol::Fly fly = flight_to(aim, cue);
     steer(received);
     fly_to_cue(received, fly);
     protocol::State next = state_;
@@ -83,7 +78,7 @@ void Room::fly_to_cue(const Received& received, const protocol::Fly& fly) {
 
 void Room::swing_to_cue(const CueState& cue, protocol::State& next) {
     swings_.clear();
-    if (cue.ms == 0) return;
+    if (cue.ms == 0) return next.swings.set({});
     const auto matrix_in = [](const protocol::State& state, const std::string& id,
                               const glm::dmat4& of_file) {
         const auto found = state.nodes->find(id);
@@ -146,7 +141,9 @@ protocol::Checked Room::check_cues(const std::string& text) const {
 protocol::Checked Room::checked(const tl::expected<protocol::ReadCueList, Error>& list) const {
     if (!list) return {0, {{{}, list.error().message}}, {}};
     protocol::Checked checked;
-    if (const std::string& file = starting_.scene.value->file; !list->scene.empty() && list->scene != file)
+    const auto file_name = [](const std::string& path) { return path.substr(path.rfind('/') + 1); };
+    const std::string& file = starting_.scene.value->file;  // a server has it with the folder that it is in
+    if (!list->scene.empty() && file_name(list->scene) != file_name(file))
         checked.problems.push_back(
             {{}, "the list was made for '" + list->scene + "', and this is '" + file + "'"});
     for (const auto& [name, cue] : list->cues) {

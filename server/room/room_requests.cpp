@@ -70,9 +70,9 @@ tl::expected<Room::Laid, Error> Room::laid(const protocol::OtherView& other) {
     if (other.cue) {
         const auto cue = state_.cues->find(*other.cue);
         if (cue == state_.cues->end())
-            return tl::unexpected(Error{{}, code::unknown_cue, "there is no cue '" + *other.cue + "'"});
+            return tl::unexpected(Error{{}, code::unknown_cue, no_cue_named(*other.cue)});
         lay_cue(cue->second, laid.state);
-        if (auto error = use_nodes(laid.state, laid.placed)) return tl::unexpected(*std::move(error));
+        if (auto error = use_laid_nodes(laid.state, laid.placed)) return tl::unexpected(*std::move(error));
         laid.state.camera = state_of(camera_of(cue->second), laid.placed->bounds);
     }
     const scene::Camera camera = camera_of(laid.state.camera);
@@ -80,6 +80,22 @@ tl::expected<Room::Laid, Error> Room::laid(const protocol::OtherView& other) {
     if (!moved) return tl::unexpected(moved.error());
     if (*moved != camera) laid.state.camera = state_of(*moved, laid.placed->bounds);
     return laid;
+}
+
+std::optional<Error> Room::use_laid_nodes(protocol::State& next,
+                                          std::shared_ptr<const scene::PlacedScene>& placed) {
+    std::erase_if(laid_scenes_, [](const auto& laid) { return laid.second.expired(); });
+    const protocol::SharedMap<protocol::NodeOverride> asked = next.nodes;
+    for (const auto& [nodes, weak] : laid_scenes_) {
+        auto laid = weak.lock();
+        if (!laid || laid->scene != scene_->scene || !(nodes == asked)) continue;
+        placed = std::move(laid);
+        count_classes(next, *placed);
+        return std::nullopt;
+    }
+    if (auto error = use_nodes(next, placed)) return error;
+    if (placed != scene_) laid_scenes_.emplace_back(asked, placed);
+    return std::nullopt;
 }
 
 plan::View Room::view_of_laid(const Laid& laid) const {
@@ -92,6 +108,12 @@ plan::View Room::view_of_laid(const Laid& laid) const {
 }
 
 void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
+    if (!received.message.id) {  // nobody could tell the picture from a frame
+        if (snapshot.cue && !state_.cues->contains(*snapshot.cue))
+            return reject(received, code::unknown_cue, no_cue_named(*snapshot.cue));
+        accepted_ = true;
+        return;
+    }
     auto laid = this->laid({snapshot.camera, snapshot.cue});
     if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);
     protocol::RendererState& renderer = laid->state.renderer;
@@ -99,7 +121,6 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     renderer.wireframe = snapshot.renderer.wireframe.value_or(renderer.wireframe);
     renderer.show_selection = snapshot.renderer.show_selection.value_or(renderer.show_selection);
     accepted_ = true;
-    if (!received.message.id) return;  // nobody could tell the picture from a frame
     plan::View view = view_of_laid(*laid);
     view.width = snapshot.width;
     view.height = snapshot.height;
@@ -157,6 +178,9 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     if (!state) return tl::unexpected(state.error());
     auto nodes = node_states(*scene_->scene, state->nodes);
     if (!nodes) return tl::unexpected(nodes.error());
+    for (const auto& [name, cue] : *state->cues)
+        if (auto problems = problems_of(name, cue, starting_, *scene_); !problems.empty())
+            return tl::unexpected(std::move(problems.front()));
     scene_ = std::make_shared<const scene::PlacedScene>(scene::place(scene_->scene, *std::move(nodes)));
     view_size_ = header.view;
     at_home_ = header.at_home;

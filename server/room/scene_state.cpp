@@ -294,25 +294,26 @@ tl::expected<navigation::CameraPath, Error> flight_path(const protocol::Fly& fly
 
 namespace {
 
-/// Into the states, or what is wrong with it.
-std::optional<Error> apply(const std::string& key, protocol::NodeOverride& change, const scene::Scene& scene,
-                           std::vector<scene::NodeState>& states) {
-    const scene::Index index = find_node(scene, key);
-    if (index == scene::kNone)
-        return Error{{}, code::unknown_node, "'nodes': there is no node " + key.substr(0, 40)};
-    const auto place = static_cast<std::size_t>(index);
-    return apply(change, scene, scene.nodes()[place], states[place]);
+Error no_node(const std::string& key) {
+    return {{}, code::unknown_node, "'nodes': there is no node " + key.substr(0, 40)};
 }
 
 }  // namespace
 
 std::vector<Error> node_problems(const scene::Scene& scene,
                                  const protocol::SharedMap<protocol::NodeOverride>& overrides) {
-    std::vector<scene::NodeState> states = scene::file_states(scene);
     std::vector<Error> problems;
-    auto changes = *overrides;
-    for (auto& [key, change] : changes)
-        if (auto error = apply(key, change, scene, states)) problems.push_back(*std::move(error));
+    for (const auto& [key, override] : *overrides) {
+        const scene::Index index = find_node(scene, key);
+        if (index == scene::kNone) {
+            problems.push_back(no_node(key));
+            continue;
+        }
+        const scene::Node& node = scene.nodes()[static_cast<std::size_t>(index)];
+        scene::NodeState state = scene::file_state(node);
+        protocol::NodeOverride change = override;
+        if (auto error = apply(change, scene, node, state)) problems.push_back(*std::move(error));
+    }
     return problems;
 }
 
@@ -320,8 +321,13 @@ tl::expected<std::vector<scene::NodeState>, Error> node_states(
     const scene::Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides) {
     std::vector<scene::NodeState> states = scene::file_states(scene);
     auto changes = *overrides;
-    for (auto& [key, change] : changes)
-        if (auto error = apply(key, change, scene, states)) return tl::unexpected(*std::move(error));
+    for (auto& [key, change] : changes) {
+        const scene::Index index = find_node(scene, key);
+        if (index == scene::kNone) return tl::unexpected(no_node(key));
+        const auto place = static_cast<std::size_t>(index);
+        if (auto error = apply(change, scene, scene.nodes()[place], states[place]))
+            return tl::unexpected(*std::move(error));
+    }
     std::erase_if(changes, [](const auto& entry) { return entry.second == protocol::NodeOverride{}; });
     overrides.set(std::move(changes));
     return states;

@@ -57,6 +57,18 @@ TEST_CASE("cues: null takes what is shown, and in a table it removes") {
     CHECK(cues["Bare"]["nodes"].empty());
 }
 
+TEST_CASE("cues: null removes an entry of a cue's table, whatever is shown") {
+    WithCues stage;
+    stage.say("a", show("Bare"));
+    stage.say("a", R"({"type":"patch","patch":{"selection":{"node":3}}})");
+    stage.say("a", R"({"type":"patch","patch":{"cues":{"Open":{"selection":{"node":null}},
+        "Bare":{"nodes":{"2":null},"sections":{"cut":null}}}}})");
+    const json cues = stage.state()["cues"];
+    CHECK(cues["Open"]["selection"].empty());
+    CHECK(cues["Bare"]["nodes"].empty());
+    CHECK(cues["Bare"]["sections"].empty());
+}
+
 TEST_CASE("cues: the camera flies there, the door swings, and all else changes at once") {
     WithCues stage;
     CHECK(stage.rejection("a", show("Open")) == "");
@@ -100,6 +112,24 @@ TEST_CASE("cues: one may be seen from another place than its own, which stays") 
     CHECK_FALSE(stage.room.moves());
 }
 
+TEST_CASE("cues: a picture from another place and the cue from there have one camera") {
+    WithCues stage;
+    stage.say("a",
+              R"({"type":"patch","patch":{"cues":{"Bare":{"camera":{"eye":[-4,3,8],"up":[0,1,0]}}}}})");
+    const json camera{{"eye", {0, 3, 9}}};
+    stage.say(
+        "b",
+        json{
+            {"type", "snapshot"}, {"id", 9}, {"width", 4}, {"height", 3}, {"cue", "Bare"}, {"camera", camera}}
+            .dump());
+    const std::vector<PictureOrder> orders = stage.room.take_orders();
+    REQUIRE(orders.size() == 1);
+    REQUIRE(stage.rejection(
+                "a", json{{"type", "cue"}, {"id", 7}, {"name", "Bare"}, {"camera", camera}}.dump()) == "");
+    CHECK(stage.camera().eye == orders[0].view.camera.eye);
+    CHECK(near_to(stage.camera().up, orders[0].view.camera.up));
+}
+
 TEST_CASE("cues: the next and the one before, by their order") {
     WithCues stage;
     CHECK(stage.rejection("a", step(-1)) == "unknown-cue");
@@ -129,6 +159,17 @@ TEST_CASE("cues: one that is shown during another's flight begins where things s
     CHECK(stage.camera().eye == glm::dvec3(0.5, 0, 8));
     CHECK(edge_of_door(stage) == glm::dvec3(1, 0, 0));
     CHECK(stage.state()["nodes"].empty());
+}
+
+TEST_CASE("cues: one that takes no time ends what swings") {
+    WithCues stage;
+    stage.say("a", show("Closed"));
+    stage.say("a", R"({"type":"swing","node":1,"open":1})");
+    REQUIRE(stage.state()["swings"].size() == 1);
+    stage.say("a", show("Bare"));
+    CHECK(stage.state()["swings"].empty());
+    stage.at(3000ms);
+    CHECK(stage.state()["swings"].empty());
 }
 
 TEST_CASE("cues: who steers stops the flight, and the door goes on") {
@@ -222,8 +263,26 @@ TEST_CASE("cues: a picture of one shows it to nobody else") {
     const scene::PlacedScene& placed = *orders[0].view.scene;
     CHECK_FALSE(placed.nodes[static_cast<std::size_t>(placed.scene->find_node(2))].active);
     CHECK(stage.state() == before);
-    CHECK(stage.rejection("b", R"({"type":"snapshot","id":10,"width":32,"height":18,"cue":"None"})") ==
-          "unknown-cue");
+    for (const char* id : {R"("id":10,)", ""})
+        CHECK(stage.rejection("b", R"({"type":"snapshot",)" + std::string(id) +
+                                       R"("width":32,"height":18,"cue":"None"})") == "unknown-cue");
+}
+
+TEST_CASE("cues: pictures of the same nodes that wait have one scene, and without an id there is none") {
+    WithCues stage;
+    const auto snapshot = [](const char* id, const char* cue) {
+        return R"({"type":"snapshot",)" + std::string(id) + R"("width":4,"height":3,"cue":")" + cue + "\"}";
+    };
+    for (const char* cue : {"Bare", "Open", "Bare"})
+        REQUIRE(stage.rejection("b", snapshot(R"("id":9,)", cue)) == "");
+    REQUIRE(stage.rejection("b", snapshot("", "Bare")) == "");
+    const std::vector<PictureOrder> orders = stage.room.take_orders();
+    REQUIRE(orders.size() == 3);
+    CHECK(orders[0].view.scene == orders[2].view.scene);
+    CHECK(orders[0].view.scene != orders[1].view.scene);
+    stage.say("a", R"({"type":"patch","patch":{"cues":{"Bare":{"nodes":{"2":null}}}}})");
+    REQUIRE(stage.rejection("b", snapshot(R"("id":9,)", "Bare")) == "");
+    CHECK(stage.room.take_orders().at(0).view.scene.get() == &stage.room.scene());
 }
 
 TEST_CASE("cues: all that is wrong with a list, a sentence each") {
@@ -253,12 +312,27 @@ TEST_CASE("cues: all that is wrong with a list, a sentence each") {
                  "Nodes: 'cues.Nodes.nodes.3.material': there is no material 5",
                  "Nodes: 'cues.Nodes.nodes': there is no node 77", "None: 'cues.None' must be an object",
                  "Odd: 'cues.Odd.ms' must be a number from 0.0 to 60000.0"}) == json{"Good"});
+    list["scene"] = "cars/door.vrut";  // of a server whose folder it is in
+    list["cues"] = {{"Good", json::object()}};
+    CHECK(check({}) == json{"Good"});
     list["version"] = 2;
     CHECK(
         check({": the list is of version 2, and this program reads version 1: use a newer program"}).empty());
     list = {{"format", "vrut-preview-cues"}, {"version", 1}, {"cues", {{"Good", json::object()}}}};
     CHECK(check({}) == json{"Good"});
     CHECK_FALSE(stage.state()["cues"].contains("Good"));
+}
+
+TEST_CASE("cues: a recording whose cues do not go with the scene is refused") {
+    WithCues stage;
+    const auto checkpoint = stage.room.checkpoint();
+    REQUIRE(checkpoint);
+    RoomOptions options;
+    options.replaying = true;
+    Stage replay("", other_scene(), options);
+    const auto restored = replay.room.restore(checkpoint->header);
+    REQUIRE_FALSE(restored);
+    CHECK(restored.error().message == "'cues.Bare.nodes': there is no node 2");
 }
 
 TEST_CASE("cues: a recording that begins in a presentation replays to the same") {
