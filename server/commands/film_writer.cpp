@@ -153,6 +153,11 @@ public:
     }
 
     void add(const scene::Image& image) {
+        if (image.width != codec_->width || image.height != codec_->height)
+            throw std::runtime_error(path_.string() + ": image " + std::to_string(images_ + 1) + " has " +
+                                     std::to_string(image.width) + "x" + std::to_string(image.height) +
+                                     " pixels, and the film " + std::to_string(codec_->width) + "x" +
+                                     std::to_string(codec_->height));
         check(libav().av_frame_make_writable(frame_.get()));
         const int stride = 4 * image.width;
         const auto last_row = static_cast<std::size_t>(stride) * static_cast<std::size_t>(image.height - 1);

@@ -182,6 +182,20 @@ TEST_CASE("what cannot be written is a sentence, and nothing is left") {
     CHECK(files_in(folder) == 1);
 }
 
+TEST_CASE("an image of another size is a sentence") {
+    const TemporaryFolder folder;
+    const fs::path path = folder.path() / "a.mp4";
+    FilmWriter film(path, kWidth, kHeight, 24);
+    film.add(noise(1));
+    scene::Image small;
+    small.resize(8, 8);
+    const std::string expected = path.string() + ": image 2 has 8x8 pixels, and the film 64x48";
+    CHECK_THROWS_WITH_AS(film.add(small), expected.c_str(), std::runtime_error);
+    film.add(noise(2));
+    film.finish();
+    CHECK(decode_film(path).images.size() == 2);
+}
+
 TEST_CASE("odd sizes are rejected with the next even one") {
     CHECK_NOTHROW(require_film("a.mp4", 640, 360));
     CHECK_THROWS_AS(require_film("a.mp4", 641, 360), std::invalid_argument);

@@ -123,6 +123,19 @@ TEST_CASE("a film that a signal stops leaves nothing, and the old one as it was"
     CHECK(studio.files() == 2);
 }
 
+TEST_CASE("a film goes on where nohup has the end of the terminal ignored") {
+    const Studio studio;
+    std::signal(SIGHUP, SIG_IGN);
+    Program program(studio.film("film.mp4") + std::vector<std::string>{"--frames", "100"});
+    std::signal(SIGHUP, SIG_DFL);
+    REQUIRE(eventually([&] { return studio.files() == 2; }, 30s));  // it is begun
+    program.signal(SIGHUP);
+    const auto status = program.wait(60s);
+    REQUIRE(status.has_value());
+    CHECK_MESSAGE((WIFEXITED(*status) && WEXITSTATUS(*status) == 0), program.output());
+    CHECK(decode_film(studio.path("film.mp4")).images.size() == 100);
+}
+
 TEST_CASE("a film of a session ends at what the session ended at") {
     const Studio studio;
     const auto size = std::vector<std::string>{"--size", "320x200"};
