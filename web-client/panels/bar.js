@@ -112,9 +112,13 @@ export class Bar {
       made.ariaExpanded = 'false';
       return made;
     };
+    const shared = (act) => {
+      this.#presentation.end();
+      return act();
+    };
     const back = button(say('bar.back'), () => {
       const pose = this.#store.now.steers ? this.#trail.back() : undefined;
-      if (pose) fly(pose);
+      if (pose) shared(() => fly(pose));
     }, { icon: 'back' });
     this.#back = back;
     const sections = button(say('sections.title'), () => this.#menu.open(sections, 'sections'), { icon: 'section' });
@@ -122,7 +126,7 @@ export class Bar {
     const point = pointButton(this.#turnPointing);
     this.#point = point;
     const cues = opens(say('cues.title'), 'present', () => cueStrip({
-      store: this.#store, commands: this.#commands, pictures: this.#pictures, presentation: this.#presentation,
+      store: this.#store, pictures: this.#pictures, presentation: this.#presentation,
     }));
     this.#cues = cues;
     for (const spare of [sections, measures, point, cues]) spare.classList.add('spare');
@@ -130,8 +134,8 @@ export class Bar {
     this.#open(null);
     this.#bar.ariaLabel = say('bar.label');
     this.#bar.replaceChildren(
-      button(say('bar.home'), () => fly(stateOf(this.#store).views.home), { icon: 'home' }),
-      button(say('bar.fit'), () => fit(), { icon: 'fit' }),
+      button(say('bar.home'), () => shared(() => fly(stateOf(this.#store).views.home)), { icon: 'home' }),
+      button(say('bar.fit'), () => shared(() => fit()), { icon: 'fit' }),
       back,
       opens(say('views.title'), 'camera', () => this.#views()),
       opens(say('parts.variants'), 'variants', () => this.#variants()),
@@ -160,8 +164,8 @@ export class Bar {
     if (!opener && this.#strip.contains(document.activeElement)) this.#opener?.focus();
     this.#opener = opener;
     this.#strip.hidden = !opener;
-    // What is prepared can be taken only there.
-    if (!opener) this.#store.set({ prepares: null });
+    // What is prepared can be taken only in the strip that goes.
+    this.#presentation.end();
     this.#showStrip = () => {};
     this.#strip.replaceChildren();
     if (!opener || !this.#store.now.state) return;

@@ -6,7 +6,6 @@ import { stateOf } from './section.js';
 
 /**
  * @import { Store } from '../base/store.js'
- * @import { Commands } from '../connection/commands.js'
  * @import { Pictures } from './pictures.js'
  * @import { Presentation } from './presentation.js'
  */
@@ -15,9 +14,9 @@ import { stateOf } from './section.js';
  * What a presenter has before them: the words for the shown cue, the picture of the next one, and all of them in a row.
  * While they prepare, a tap chooses what this page alone shows until it is taken.
  *
- * @param {{store: Store, commands: Commands, pictures: Pictures, presentation: Presentation}} page
+ * @param {{store: Store, pictures: Pictures, presentation: Presentation}} page
  */
-export function cueStrip({ store, commands, pictures, presentation }) {
+export function cueStrip({ store, pictures, presentation }) {
   const state = () => stateOf(store);
   const picture = () => element('img', { alt: '', draggable: false });
   const words = element('p', { className: 'words', tabIndex: 0 });
@@ -32,7 +31,7 @@ export function cueStrip({ store, commands, pictures, presentation }) {
   const card = element('div', { className: 'speaker' }, words, element('div', { className: 'acts' }, prepare, keep, take), next);
   const list = rows(say('cues.title'), say('cues.none'), (name) => {
     const image = picture();
-    const chip = button('', () => (store.now.prepares === null ? commands.cue({ name }) : store.set({ prepares: name })));
+    const chip = button('', () => presentation.choose(name));
     chip.replaceChildren(image, element('span', {}, name));
     return {
       children: [chip],

@@ -78,6 +78,16 @@ export class Preparation {
     this.#want('moving');
   }
 
+  /** Keeps what is prepared, and hears no hand until it is shown again. */
+  rest() {
+    this.#input.enabled = false;
+    this.#wanted = null;
+    clearTimeout(this.#timer);
+    if (!this.#prepared) return;
+    this.#gestures = new Gestures();
+    this.#gestures.restart(this.#prepared.camera);
+  }
+
   #apply(message) {
     const [prepared, state] = [this.#prepared, this.#page.state()];
     if (!prepared || !state) return;

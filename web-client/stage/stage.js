@@ -147,9 +147,10 @@ export class Stage {
     store.subscribe(
       ({ role, state, language }) => [role, state?.scene, state?.selection, state?.nodes, language],
       () => partBar.show(store.now));
-    store.subscribe(({ prepares, steers, state, hasPicture }) => [steers && hasPicture ? prepares : null, state?.cues],
-      (prepares) => {
-        this.#preparation.show(prepares);
+    store.subscribe(({ prepares, steers, state, hasPicture }) => [prepares, steers && hasPicture, state?.cues],
+      (prepares, isHeard) => {
+        if (prepares === null || isHeard) this.#preparation.show(prepares);
+        else this.#preparation.rest();
         this.#lines.hold('prepare', this.#preparation.isOn ? say('cues.onlyYou', { name: prepares }) : '');
         this.#input.enabled = store.now.steers && !this.#preparation.isOn;
       });
@@ -221,6 +222,7 @@ export class Stage {
   /** Begins or ends to point at what a finger touches. */
   turnPointing = () => {
     if (this.#store.now.points) return this.#pointer.end();
+    this.#endPreparing();
     this.#snapper.end();
     this.#pointer.begin();
   };
@@ -232,6 +234,7 @@ export class Stage {
    * @param {AbortSignal} signal
    */
   async nextTap(text, signal) {
+    this.#endPreparing();
     this.#pointer.end();
     this.#lines.hold('tap', text);
     const tap = await nextTap(find('tap'), signal);
@@ -244,6 +247,7 @@ export class Stage {
     const snapper = this.#snapper;
     return {
       begin: (session) => {
+        this.#endPreparing();
         this.#pointer.end();
         snapper.begin(session);
       },
@@ -310,6 +314,11 @@ export class Stage {
 
   #endSnapping = () => this.#snapper.end();
   #endPointing = () => this.#pointer.end();
+
+  /** What is tapped is to be in the picture that all see. */
+  #endPreparing() {
+    this.#store.set({ prepares: null });
+  }
 
   /** The number of the frame shown. A server that has begun anew knows nothing of those before. */
   get #frame() {

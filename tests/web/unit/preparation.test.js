@@ -116,3 +116,31 @@ test('a picture that is not drawn is no end of it, and a cue that is gone is', a
   window.displayFrame();
   assert.deepEqual(page.moved.filter(Boolean), []);
 });
+
+test('while it rests no hand turns it, and then it goes on from the camera it had', async () => {
+  page.preparation.show('Door');
+  await page.draw();
+  page.pointer('pointerdown', 100);
+  page.pointer('pointermove', 150);
+  window.displayFrame();
+  await page.draw();
+  const turned = page.moved.at(-1);
+  const { src } = page.image;
+  const { length } = page.asked;
+  page.preparation.rest();
+  page.pointer('pointermove', 180);
+  page.pointer('pointerup', 180, { buttons: 0 });
+  window.displayFrame();
+  clock.advance(1000);
+  assert.equal(page.asked.length, length);
+  assert.deepEqual([page.moved.at(-1), page.image.src, page.layer.hidden, page.preparation.isOn], [turned, src, false, true]);
+  page.preparation.show('Door');
+  const { camera, samples } = page.asked.at(-1).wanted;
+  assert.deepEqual([camera.eye, samples], [turned.eye, undefined]);
+  await page.draw();
+  page.pointer('pointerdown', 100);
+  page.pointer('pointermove', 101);
+  window.displayFrame();
+  const [from, to] = [turned, page.moved.at(-1)].map(({ eye }) => eye);
+  assert.ok(to !== from && Math.hypot(...to.map((x, i) => x - from[i])) < 0.5, String([from, to]));
+});
