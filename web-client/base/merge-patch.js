@@ -10,6 +10,6 @@ export function mergePatch(target, patch, keepsNull = false) {
   return Object.fromEntries(members);
 }
 
-function isObject(value) {
+export function isObject(value) {
   return typeof value === 'object' && value !== null && !Array.isArray(value);
 }

@@ -1,4 +1,5 @@
 import { mergePatch } from '../base/merge-patch.js';
+import { patchParts } from '../base/patch-parts.js';
 
 /**
  * @import {
@@ -22,8 +23,15 @@ export function commandsBy({ ask, refused }) {
   return {
     /** Together with what waits for an answer; see Changes. @param {StatePatch} patch */
     change: (patch) => changes.add(patch),
-    /** By itself. @param {StatePatch} patch */
-    patch: (patch) => tell({ type: 'patch', patch }),
+    /** By itself, a long one in parts. @param {StatePatch} patch */
+    patch: async (patch) => {
+      let answer;
+      for (const part of patchParts(patch)) {
+        answer = await tell({ type: 'patch', patch: part });
+        if (!answer) break;
+      }
+      return answer;
+    },
     /** @param {Omit<ClientControl, 'type'>} action */
     control: (action) => tell({ type: 'control', ...action }),
     /**

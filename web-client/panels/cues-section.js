@@ -1,20 +1,16 @@
 import { asShown, cueList, cueNames } from '../base/cues.js';
 import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
+import { isObject } from '../base/merge-patch.js';
 import { moved, unusedName } from '../base/order.js';
+import { patchParts } from '../base/patch-parts.js';
 import { onChange } from '../base/store.js';
 import { say, written } from '../base/texts.js';
 import { range, rows } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 import { field } from './views-section.js';
 
-/**
- * @import { Cues } from '../base/cues.js'
- * @import { Page, Section } from './section.js'
- */
-
-/** So many bytes of a message are left for its own members; see the server's limits. */
-const MOST_BYTES = 60_000;
+/** @import { Page, Section } from './section.js' */
 
 /**
  * The cues of a presentation: made of what is shown, put in order, kept as a file.
@@ -136,7 +132,7 @@ function files({ commands, store, offer, report }) {
     if (!list) return report(new Error(say('cues.noList')));
     const found = /** @type {string[]} */ ([]);
     const fitting = /** @type {string[]} */ ([]);
-    for (const cues of parts(list.cues)) {
+    for (const { cues } of patchParts({ cues: list.cues })) {
       const answer = await commands.check({ ...list, cues });
       if (!answer) return;
       found.push(...answer.problems.map(({ message }) => message));
@@ -147,9 +143,8 @@ function files({ commands, store, offer, report }) {
   };
   const put = async (taken) => {
     const before = stateOf(store).cues;
-    for (const cues of parts(taken)) if (!await commands.patch({ cues })) return;
     const names = Object.keys(taken);
-    if (names.length === 0) return;
+    if (names.length === 0 || !await commands.patch({ cues: taken })) return;
     const undo = () => commands.patch({ cues: Object.fromEntries(names.map((name) => [name, before[name] ?? null])) });
     offer(say('cues.imported', { count: String(names.length) }), say('views.undo'), undo);
   };
@@ -169,29 +164,8 @@ function files({ commands, store, offer, report }) {
 function parsed(text) {
   try {
     const list = JSON.parse(text);
-    return typeof list.cues === 'object' && list.cues ? list : null;
+    return isObject(list.cues) ? list : null;
   } catch {
     return null;
   }
-}
-
-/**
- * Cues in parts that messages may hold; at least one part.
- *
- * @param {Cues} cues
- * @returns {Cues[]}
- */
-export function parts(cues) {
-  const made = [/** @type {Cues} */ ({})];
-  let bytes = 0;
-  for (const [name, cue] of Object.entries(cues)) {
-    const size = new TextEncoder().encode(JSON.stringify({ [name]: cue })).length;
-    if (bytes > 0 && bytes + size > MOST_BYTES) {
-      made.push({});
-      bytes = 0;
-    }
-    made[made.length - 1][name] = cue;
-    bytes += size;
-  }
-  return made;
 }

@@ -45,3 +45,17 @@ test('a command promises its answer, or nothing once its refusal is told', async
   assert.equal(await commands.open('none'), undefined);
   assert.deepEqual(refused, ['no such scene']);
 });
+
+test('a long patch goes in parts, the next one when the one before is done', async () => {
+  const asked = [];
+  const commands = commandsBy({
+    ask: async ({ patch }) => (asked.push(Object.keys(patch.cues)) === 2 ? Promise.reject(new Error('no')) : {}),
+    refused: () => {},
+  });
+  const text = 'x'.repeat(40_000);
+  const cues = { a: { text }, b: { text }, c: { text } };
+  assert.equal(await commands.patch({ cues }), undefined);
+  assert.deepEqual(asked, [['a'], ['b']]);
+  assert.deepEqual(await commands.patch({ cues }), {});
+  assert.deepEqual(asked.slice(2), [['a'], ['b'], ['c']]);
+});

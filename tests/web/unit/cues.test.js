@@ -2,7 +2,6 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { LOOKS, asShown, cueAfter, cueList, cueNames, lookOf, pictureOfCue } from '../../../web-client/base/cues.js';
 import { moved, namesInOrder, unusedName } from '../../../web-client/base/order.js';
-import { parts } from '../../../web-client/panels/cues-section.js';
 import { Pictures } from '../../../web-client/panels/pictures.js';
 
 const cues = { Last: {}, First: { order: -1 }, Then: { order: 2 }, Early: {} };
@@ -44,15 +43,6 @@ test('what is written and when changes no picture, and all else does', () => {
 test('the file of a list names its scene', () => {
   assert.deepEqual(cueList({ cues, scene: { file: 'car.vrut', name: 'Car' } }),
     { format: 'vrut-preview-cues', version: 1, scene: 'car.vrut', cues });
-});
-
-test('a long list goes in parts that a message holds', () => {
-  assert.deepEqual(parts({}), [{}]);
-  assert.deepEqual(parts(cues), [cues]);
-  const long = Object.fromEntries([1, 2, 3, 4, 5].map((i) => [`c${i}`, { text: 'é'.repeat(10_000) }]));
-  const made = parts(long);
-  assert.deepEqual(made.map((part) => Object.keys(part).length), [2, 2, 1]);
-  assert.deepEqual(Object.assign({}, ...made), long);
 });
 
 /** An `img` without a page. */
