@@ -51,15 +51,36 @@ def in_order(cues):
     return sorted(cues, key=lambda name: (cues[name].get("order", float("inf")), name))
 
 
-async def bring(server, path):
-    """Brings the cues of a list that go with the scene; returns them."""
+def exactly(wanted, now):
+    """The patch that makes the cue `now` exactly the wanted one: as tables merge, what that lacks of them is removed."""
+    if not wanted or not now:
+        return wanted
+
+    def replacing(table, present):
+        return {**{name: None for name in present if name not in table}, **table}
+
+    cue = {"order": None, **wanted}
+    if wanted.get("sections") is not None:
+        cue["sections"] = replacing(wanted["sections"], now.get("sections") or {})
+    if wanted.get("nodes") is not None:
+        present = now.get("nodes") or {}
+        nodes = {node: replacing(members, present.get(node) or {}) if members else members
+                 for node, members in wanted["nodes"].items()}
+        cue["nodes"] = replacing(nodes, present)
+    if wanted.get("selection") is not None:
+        cue["selection"] = {"node": wanted["selection"].get("node")}
+    return cue
+
+
+async def bring(server, path, before):
+    """Brings the cues of a list that go with the scene, where they replace those before; returns them."""
     cues = json.loads(path.read_text(encoding="utf-8"))
     checked = await server.send(type="check", cues=cues)
     for problem in checked["problems"]:
         print(f"show_cues.py: {problem['message']}")
     brought = {name: cues["cues"][name] for name in checked["fitting"]}
     for name, cue in brought.items():  # each in a message of its own: those may not be long
-        await server.send(type="patch", patch={"cues": {name: cue}})
+        await server.send(type="patch", patch={"cues": {name: exactly(cue, before.get(name))}})
     return brought
 
 
@@ -93,13 +114,15 @@ async def main():
         message = await server.until(lambda message: isinstance(message, dict) and message["type"] == "state")
         before = message["state"]["cues"]
         await server.send(type="control", action="take")
-        cues = await bring(server, options.list) if options.list else before
+        cues = await bring(server, options.list, before) if options.list else before
         await server.send(type="patch", patch={"cues": {HERE: {"ms": 0}}})
         try:
             await show(server, in_order(cues), options)
         finally:
             await server.send(type="cue", name=HERE)
-            brought = cues if options.list else {}
-            await server.send(type="patch", patch={"cues": {HERE: None, **{name: before.get(name) for name in brought}}})
+            await server.send(type="patch", patch={"cues": {HERE: None}})
+            for name, cue in cues.items() if options.list else ():
+                was = before.get(name)
+                await server.send(type="patch", patch={"cues": {name: exactly(was, {**(was or {}), **cue})}})
 
 asyncio.run(main())

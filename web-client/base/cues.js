@@ -31,6 +31,40 @@ export function asShown() {
   return Object.fromEntries(LOOKS.map((member) => [member, null]));
 }
 
+/**
+ * What a patch has for the cue `now` to become exactly the one that is wanted: as tables merge, what that lacks of them
+ * is removed.
+ *
+ * @param {Cue|undefined} wanted
+ * @param {Cue|undefined} now
+ */
+export function exactly(wanted, now) {
+  if (!wanted) return null;
+  if (!now) return wanted;
+  const { order = null, nodes, sections, selection } = wanted;
+  return {
+    ...wanted,
+    order,
+    ...(nodes ? { nodes: replacing(nodes, now.nodes, replacing) } : {}),
+    ...(sections ? { sections: replacing(sections, now.sections) } : {}),
+    ...(selection ? { selection: { node: selection.node ?? null } } : {}),
+  };
+}
+
+/**
+ * With null for what `now` has and `wanted` lacks.
+ *
+ * @param {*} wanted
+ * @param {*} now
+ * @param {(wanted: *, now: *) => *} [entry] the same for what both have
+ */
+function replacing(wanted, now, entry = (value) => value) {
+  const removed = Object.keys(now).filter((name) => !Object.hasOwn(wanted, name)).map((name) => [name, null]);
+  const kept = Object.entries(wanted).map(([name, value]) =>
+    [name, value && Object.hasOwn(now, name) ? entry(value, now[name]) : value]);
+  return Object.fromEntries([...removed, ...kept]);
+}
+
 /** A text that is the same for cues that look the same. @param {Cue} cue */
 export function lookOf(cue) {
   return JSON.stringify(LOOKS.map((member) => cue[member]));

@@ -44,3 +44,8 @@ export function unusedName(word, names) {
   while (names.includes(`${word} ${number}`)) number += 1;
   return `${word} ${number}`;
 }
+
+/** A name, or where that is taken the first free one of a word. */
+export function freeName(name, names, word = name) {
+  return names.includes(name) ? unusedName(word, names) : name;
+}

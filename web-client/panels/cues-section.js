@@ -1,8 +1,8 @@
-import { asShown, cueList, cueNames } from '../base/cues.js';
+import { asShown, cueList, cueNames, exactly } from '../base/cues.js';
 import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
 import { isObject } from '../base/merge-patch.js';
-import { moved, unusedName } from '../base/order.js';
+import { freeName, moved, unusedName } from '../base/order.js';
 import { patchParts } from '../base/patch-parts.js';
 import { onChange } from '../base/store.js';
 import { say, written } from '../base/texts.js';
@@ -41,7 +41,11 @@ function cues({ commands, store, offer, report, present }) {
   const put = async (name, changed, text) => {
     const before = all()[name];
     if (await patch({ cues: { [name]: changed } })) {
-      offer(text, say('views.undo'), () => patch({ cues: { [name]: before } }));
+      offer(text, say('views.undo'), () => {
+        // Another may have got the name of one that was deleted.
+        const to = changed === null ? freeName(name, Object.keys(all())) : name;
+        return patch({ cues: { [to]: exactly(before, all()[to]) } });
+      });
     }
   };
   const add = async (name) => {
@@ -144,8 +148,12 @@ function files({ commands, store, offer, report }) {
   const put = async (taken) => {
     const before = stateOf(store).cues;
     const names = Object.keys(taken);
-    if (names.length === 0 || !await commands.patch({ cues: taken })) return;
-    const undo = () => commands.patch({ cues: Object.fromEntries(names.map((name) => [name, before[name] ?? null])) });
+    const become = (wanted) => {
+      const now = stateOf(store).cues;
+      return commands.patch({ cues: Object.fromEntries(names.map((name) => [name, exactly(wanted[name], now[name])])) });
+    };
+    if (names.length === 0 || !await become(taken)) return;
+    const undo = () => become(before);
     offer(say('cues.imported', { count: String(names.length) }), say('views.undo'), undo);
   };
   const saveList = () => {

@@ -1,7 +1,7 @@
 import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
 import { asItWas, noteNames, placeInPicture } from '../base/notes.js';
-import { unusedName } from '../base/order.js';
+import { freeName, unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say, writtenTime } from '../base/texts.js';
 import { rows, toggle } from './controls.js';
@@ -53,7 +53,11 @@ function notes({ commands, store, offer, report, notePictures: pictures }) {
   };
   const remove = async (name) => {
     const before = all()[name];
-    const undo = () => patch({ markers: { [name]: asItWas(before) } });
+    const undo = () => {
+      // A new note may have got its name.
+      const to = freeName(name, Object.keys(all()), 'note');
+      return patch({ markers: { [to]: asItWas(before) } });
+    };
     if (await patch({ markers: { [name]: null } })) offer(say('views.deleted', { name: before.text || name }), say('views.undo'), undo);
   };
   const add = async (text) => {

@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { LOOKS, asShown, cueAfter, cueList, cueNames, lookOf, pictureOfCue } from '../../../web-client/base/cues.js';
-import { moved, namesInOrder, unusedName } from '../../../web-client/base/order.js';
+import { LOOKS, asShown, cueAfter, cueList, cueNames, exactly, lookOf, pictureOfCue } from '../../../web-client/base/cues.js';
+import { mergePatch } from '../../../web-client/base/merge-patch.js';
+import { freeName, moved, namesInOrder, unusedName } from '../../../web-client/base/order.js';
 import { Pictures } from '../../../web-client/panels/pictures.js';
 
 const cues = { Last: {}, First: { order: -1 }, Then: { order: 2 }, Early: {} };
@@ -24,6 +25,12 @@ test('a name that is free has the first free number', () => {
   assert.equal(unusedName('View', ['View 1', 'Door', 'View 3']), 'View 2');
 });
 
+test('what comes back has its name, or where that is taken meanwhile another', () => {
+  assert.equal(freeName('Door', ['View 1']), 'Door');
+  assert.equal(freeName('Door', ['Door', 'Door 1']), 'Door 2');
+  assert.equal(freeName('note 2', ['note 1', 'note 2'], 'note'), 'note 3');
+});
+
 test('the cue so many steps from the shown one', () => {
   assert.equal(cueAfter({ cues, cue: undefined }, 1), 'First');
   assert.equal(cueAfter({ cues, cue: undefined }, -1), undefined);
@@ -43,6 +50,31 @@ test('what is written and when changes no picture, and all else does', () => {
 test('the file of a list names its scene', () => {
   assert.deepEqual(cueList({ cues, scene: { file: 'car.vrut', name: 'Car' } }),
     { format: 'vrut-preview-cues', version: 1, scene: 'car.vrut', cues });
+});
+
+test('a cue becomes exactly another one, of whose tables nothing of its own stays', () => {
+  const wanted = {
+    text: 'a', nodes: { 1: { active: false }, 2: { activeChild: 1 } }, sections: { x: { distance: 1 } }, selection: {},
+  };
+  const now = {
+    text: 'b', order: 3, nodes: { 1: { active: true, material: 7 }, 5: { active: false } }, selection: { node: 4 },
+    sections: { x: { distance: 2 }, y: { distance: 3 } },
+  };
+  assert.deepEqual(exactly(wanted, now), {
+    text: 'a', order: null, nodes: { 1: { active: false, material: null }, 2: { activeChild: 1 }, 5: null },
+    sections: { x: { distance: 1 }, y: null }, selection: { node: null },
+  });
+  assert.deepEqual(mergePatch(now, exactly(wanted, now)), wanted);
+  assert.deepEqual(mergePatch(wanted, exactly(now, wanted)), now);
+});
+
+test('of a cue that says less, only what it says', () => {
+  const now = { text: 'b', nodes: { 1: {} }, sections: { x: {} }, selection: { node: 1 } };
+  assert.deepEqual(exactly({ text: 'a', nodes: null }, now), { text: 'a', order: null, nodes: null });
+  assert.deepEqual(exactly({ nodes: { 1: null } }, now).nodes, { 1: null });
+  assert.equal(exactly(undefined, now), null);
+  const wanted = { text: 'a' };
+  assert.equal(exactly(wanted, undefined), wanted);
 });
 
 /** An `img` without a page. */
