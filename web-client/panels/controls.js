@@ -1,5 +1,6 @@
 import { element } from '../base/element.js';
 import { language, written } from '../base/texts.js';
+import { cutToBytes } from '../base/utf8.js';
 
 /**
  * Shows a value; its `change` is told what the user does, and may give a promise of its end.
@@ -134,6 +135,41 @@ export function color(label, change) {
   };
   return patient(labelled(label, '', input), apply, () =>
     change([...[1, 3, 5].map((at) => parseInt(input.value.slice(at, at + 2), 16) / 255), alpha]));
+}
+
+/**
+ * A text of some lines, at most so many bytes, sent when it is left. What is typed and not sent yet is kept, whatever the
+ * server has: also where a lost connection takes the focus from it.
+ *
+ * @returns {Control & {element: HTMLTextAreaElement}} shows what the server has
+ */
+export function words(properties, most, change) {
+  const area = /** @type {HTMLTextAreaElement} */ (element('textarea', { rows: 3, ...properties }));
+  let known = '';
+  let sent = /** @type {?string} */ (null);
+  const send = async () => {
+    const text = area.value;
+    if (text === known || text === sent) return;
+    sent = text;
+    await change(text);
+    sent = null;
+  };
+  area.oninput = () => limit(area, most);
+  area.onchange = area.onblur = send;
+  return {
+    element: area,
+    show(text) {
+      const isTyped = area.value !== known;
+      known = text.replace(/\r\n?/g, '\n'); // as the browser gives it back
+      if (!isTyped && area.value !== known) area.value = known;
+    },
+  };
+}
+
+/** Cuts what is typed to so many bytes. @param {HTMLInputElement|HTMLTextAreaElement} typed @param {number} most */
+export function limit(typed, most) {
+  const text = cutToBytes(typed.value, most);
+  if (text !== typed.value) typed.value = text;
 }
 
 /** With labels by key. @returns {Control} shows texts or numbers by key, or dashes */

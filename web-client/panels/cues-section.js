@@ -6,11 +6,14 @@ import { freeName, moved, unusedName } from '../base/order.js';
 import { patchParts } from '../base/patch-parts.js';
 import { onChange } from '../base/store.js';
 import { say, written } from '../base/texts.js';
-import { range, rows } from './controls.js';
+import { range, rows, words } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 import { field } from './views-section.js';
 
 /** @import { Page, Section } from './section.js' */
+
+/** Of the words of a cue; see the state's `cues`. */
+const MOST_BYTES = 2000;
 
 /**
  * The cues of a presentation: made of what is shown, put in order, kept as a file.
@@ -57,7 +60,8 @@ function cues({ commands, store, offer, report, present }) {
     remove: (name) => put(name, null, say('views.deleted', { name })),
     rename: async (name, to) => isFree(to) && patch({ cues: { [to]: all()[name], [name]: null } }),
     overwrite: (name) => put(name, asShown(), say('cues.overwritten', { name })),
-    change: (name, members) => commands.change({ cues: { [name]: members } }),
+    // One that another deletes while its words are typed would be made anew.
+    change: (name, members) => Object.hasOwn(all(), name) && commands.change({ cues: { [name]: members } }),
     move: (name, by) => {
       const changed = moved(all(), cueNames(all()), name, by);
       if (changed) patch({ cues: changed });
@@ -86,18 +90,18 @@ function cueRow(name, { show, remove, rename, overwrite, change, move }) {
   const unfold = button(say('views.edit', { text: name }), () => turn(), { icon: 'edit', quiet: true, only: true });
   unfold.ariaExpanded = 'false';
   const entry = field(say('views.newNameOf', { name }), say('views.rename'), (to) => rename(name, to));
-  const words = element('textarea', { rows: 3, maxLength: 1000, ariaLabel: say('cues.wordsOf', { name }), placeholder: say('cues.words') });
-  words.onchange = () => change(name, { text: words.value });
+  const text = words({ ariaLabel: say('cues.wordsOf', { name }), placeholder: say('cues.words') }, MOST_BYTES,
+    (value) => change(name, { text: value }));
   const time = range(say('cues.time'), { min: 0, max: 10, step: 0.1, say: (s) => `${written(s, 2)} s` }, (s) => change(name, { ms: Math.round(s * 1000) }));
   const earlier = button(say('views.earlier'), () => move(name, -1));
   const later = button(say('views.later'), () => move(name, 1));
-  const editor = element('div', { className: 'editor', hidden: true }, words, time.element, entry.element,
+  const editor = element('div', { className: 'editor', hidden: true }, text.element, time.element, entry.element,
     element('div', { className: 'buttons' }, earlier, later),
     button(say('cues.overwrite'), () => overwrite(name), { icon: 'camera' }));
   const turn = () => {
     editor.hidden = !editor.hidden;
     unfold.ariaExpanded = String(!editor.hidden);
-    (editor.hidden ? unfold : words).focus();
+    (editor.hidden ? unfold : text.element).focus();
   };
   editor.onkeydown = (event) => {
     if (event.key !== 'Escape') return;
@@ -108,7 +112,7 @@ function cueRow(name, { show, remove, rename, overwrite, change, move }) {
     children: [there, unfold, away, editor],
     show({ cue, isShown, isFirst, isLast }) {
       there.ariaPressed = String(isShown);
-      if (document.activeElement !== words) words.value = cue.text;
+      text.show(cue.text);
       time.show(cue.ms / 1000);
       entry.show(name);
       earlier.ariaDisabled = String(isFirst);

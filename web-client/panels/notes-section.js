@@ -4,7 +4,7 @@ import { asItWas, noteNames, placeInPicture } from '../base/notes.js';
 import { freeName, unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say, writtenTime } from '../base/texts.js';
-import { rows, toggle } from './controls.js';
+import { rows, toggle, words } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 import { field, lookingAt, middleOf, placeOf } from './views-section.js';
 
@@ -13,6 +13,9 @@ import { field, lookingAt, middleOf, placeOf } from './views-section.js';
  * @import { Note, Notes } from '../base/notes.js'
  * @import { Page, Section } from './section.js'
  */
+
+/** Of a text; see the state's `markers`. */
+const MOST_BYTES = 1000;
 
 /**
  * Notes on points of the scene, and the report of them.
@@ -68,9 +71,9 @@ function notes({ commands, store, offer, report, notePictures: pictures }) {
     const name = unusedName('note', Object.keys(all()));
     return patch({ markers: { [name]: { ...placeOf(picked), text, time: Date.now() } } });
   };
-  const change = (name, members) => commands.change({ markers: { [name]: members } });
+  const change = (name, members) => Object.hasOwn(all(), name) && commands.change({ markers: { [name]: members } });
   const list = rows(say('notes.title'), say('notes.none'), (name) => noteRow(name, { go, remove, change, pictures, seen }));
-  const entry = field(say('notes.text'), say('notes.add'), add);
+  const entry = field(say('notes.text'), say('notes.add'), add, MOST_BYTES);
   return {
     content: [list.element, entry.element],
     // Where they are changes with each frame; here only which the frame has.
@@ -116,13 +119,12 @@ function noteRow(name, { go, remove, change, pictures, seen }) {
   const unfold = button('', () => turn(), { icon: 'edit', quiet: true, only: true });
   unfold.ariaExpanded = 'false';
   const away = button('', () => remove(name), { icon: 'remove', quiet: true, only: true });
-  const words = element('textarea', { rows: 3, maxLength: 1000 });
-  words.onchange = () => change(name, { text: words.value });
-  const editor = element('div', { className: 'editor', hidden: true }, words);
+  const text = words({}, MOST_BYTES, (value) => change(name, { text: value }));
+  const editor = element('div', { className: 'editor', hidden: true }, text.element);
   const turn = () => {
     editor.hidden = !editor.hidden;
     unfold.ariaExpanded = String(!editor.hidden);
-    (editor.hidden ? unfold : words).focus();
+    (editor.hidden ? unfold : text.element).focus();
   };
   editor.onkeydown = (event) => {
     if (event.key !== 'Escape') return;
@@ -132,8 +134,8 @@ function noteRow(name, { go, remove, change, pictures, seen }) {
   return {
     children: [there, element('div', { className: 'tools' }, done.element, unfold, away), editor],
     show({ note, lost, at }) {
-      const text = note.text || name;
-      title.textContent = text;
+      const called = note.text || name;
+      title.textContent = called;
       by.textContent = byWords(note);
       image.hidden = !note.view;
       // The note's place is not cut off.
@@ -142,11 +144,11 @@ function noteRow(name, { go, remove, change, pictures, seen }) {
       there.disabled = lost;
       there.classList.toggle('done', note.done);
       done.show(note.done);
-      doneInput.ariaLabel = say('notes.isDone', { text });
-      unfold.ariaLabel = unfold.title = say('views.edit', { text });
-      away.ariaLabel = away.title = say('views.delete', { text });
-      words.ariaLabel = say('notes.textOf', { text });
-      if (document.activeElement !== words) words.value = note.text;
+      doneInput.ariaLabel = say('notes.isDone', { text: called });
+      unfold.ariaLabel = unfold.title = say('views.edit', { text: called });
+      away.ariaLabel = away.title = say('views.delete', { text: called });
+      text.element.ariaLabel = say('notes.textOf', { text: called });
+      text.show(note.text);
     },
   };
 }

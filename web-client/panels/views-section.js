@@ -2,7 +2,7 @@ import { button, element } from '../base/element.js';
 import { moved, namesInOrder, unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
-import { byName, rows } from './controls.js';
+import { byName, limit, rows } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 
 /**
@@ -166,9 +166,10 @@ function places(title, none, go, remove, edit) {
   };
 }
 
-/** Adds what is typed, or else what it shows; `add` gives nothing where that fails. */
-export function field(label, action, add) {
+/** Adds what is typed, or else what it shows, of so many bytes; `add` gives nothing where that fails. */
+export function field(label, action, add, most = Infinity) {
   const input = element('input', { ariaLabel: label });
+  if (most < Infinity) input.oninput = () => limit(input, most);
   const form = element('form', { className: 'entry' }, input, element('button', {}, action));
   form.onsubmit = async (event) => {
     event.preventDefault();
