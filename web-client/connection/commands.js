@@ -8,6 +8,8 @@ import { patchParts } from '../base/patch-parts.js';
  */
 
 const FLIGHT_MS = 600;
+/** More snapshots of a client at a time are refused. */
+const SNAPSHOTS = 2;
 
 /**
  * All that the page asks of the server. Each promises the answer; undefined where `refused` was told why there is none.
@@ -20,6 +22,7 @@ export function commandsBy({ ask, refused }) {
   /** @param {ClientMessage} message */
   const tell = (message) => ask(message).catch((error) => void refused(error));
   const changes = new Changes({ ask, refused });
+  const draw = atMost(SNAPSHOTS, ask);
   return {
     /** Together with what waits for an answer; see Changes. @param {StatePatch} patch */
     change: (patch) => changes.add(patch),
@@ -49,13 +52,13 @@ export function commandsBy({ ask, refused }) {
     /** @param {Omit<ClientTree, 'type'>} query */
     tree: (query) => tell({ type: 'tree', ...query }),
     /** @param {{width: number, height: number}} size */
-    snapshot: (size) => tell({ type: 'snapshot', ...size, jpegQuality: 95 }),
+    snapshot: (size) => draw({ type: 'snapshot', ...size, jpegQuality: 95 }).catch((error) => void refused(error)),
     /** @param {{name: string, camera?: ClientCue['camera']}|{step: number}} which */
     cue: (which) => tell({ type: 'cue', ...which }),
     /** What of a list of cues does not go with the scene. @param {object} cues @returns {Promise<ServerChecked|undefined>} */
     check: (cues) => tell({ type: 'check', cues }),
     /** Nothing where it cannot be drawn. @param {Omit<ClientSnapshot, 'type'>} picture */
-    picture: (picture) => ask({ type: 'snapshot', ...picture }).catch(() => undefined),
+    picture: (picture) => draw({ type: 'snapshot', ...picture }).catch(() => undefined),
     /** @param {'start'|'stop'} action */
     record: (action) => tell({ type: 'record', action }),
     scenes: () => tell({ type: 'scenes' }),
@@ -63,6 +66,29 @@ export function commandsBy({ ask, refused }) {
     share: (page) => tell({ type: 'share', page }),
     /** @param {string} scene @param {ClientOpen['upAxis']} [upAxis] as chosen last if left out */
     open: (scene, upAxis) => tell({ type: 'open', scene, upAxis }),
+  };
+}
+
+/**
+ * Asks so many questions at a time; the others wait, in their order.
+ *
+ * @param {number} most
+ * @param {(message: ClientMessage) => Promise<*>} ask
+ */
+function atMost(most, ask) {
+  const waiting = /** @type {(() => void)[]} */ ([]);
+  let free = most;
+  /** @param {ClientMessage} message */
+  return async (message) => {
+    if (free > 0) free -= 1;
+    else await new Promise((resolve) => waiting.push(() => resolve(undefined)));
+    try {
+      return await ask(message);
+    } finally {
+      const next = waiting.shift();
+      if (next) next();
+      else free += 1;
+    }
   };
 }
 

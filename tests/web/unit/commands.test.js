@@ -59,3 +59,32 @@ test('a long patch goes in parts, the next one when the one before is done', asy
   assert.deepEqual(await commands.patch({ cues }), {});
   assert.deepEqual(asked.slice(2), [['a'], ['b'], ['c']]);
 });
+
+test('two pictures are on their way at a time, and the next follow in their order', async () => {
+  const asked = [];
+  const refused = [];
+  const commands = commandsBy({
+    ask: ({ width }) => new Promise((resolve, reject) => { asked.push({ width, resolve, reject }); }),
+    refused: ({ message }) => refused.push(message),
+  });
+  const settled = () => new Promise(setImmediate);
+  const widths = () => asked.map(({ width }) => width);
+  const answers = [1, 2, 3, 4].map((width) => commands.picture({ width, height: 1 }));
+  answers.push(commands.snapshot({ width: 5, height: 1 }));
+  assert.deepEqual(widths(), [1, 2]);
+  asked[1].reject(new Error('busy')); // that one is given up, and its place is free
+  await settled();
+  assert.deepEqual(widths(), [1, 2, 3]);
+  asked[0].resolve('first');
+  asked[2].resolve('third');
+  await settled();
+  assert.deepEqual(widths(), [1, 2, 3, 4, 5]);
+  asked[3].resolve('fourth');
+  asked[4].reject(new Error('too large'));
+  assert.deepEqual(await Promise.all(answers), ['first', undefined, 'third', 'fourth', undefined]);
+  assert.deepEqual(refused, ['too large']);
+  commands.picture({ width: 6, height: 1 });
+  commands.picture({ width: 7, height: 1 });
+  commands.picture({ width: 8, height: 1 });
+  assert.deepEqual(widths(), [1, 2, 3, 4, 5, 6, 7]);
+});
