@@ -3,7 +3,7 @@ import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
 import { rows, toggle } from './controls.js';
-import { cueStrip } from './cue-strip.js';
+import { cueStrip, shownOf } from './cue-strip.js';
 import { Pictures } from './pictures.js';
 import { pointButton } from './pointing.js';
 import { Presentation } from './presentation.js';
@@ -14,7 +14,7 @@ import { viewNames } from './views-section.js';
 
 /**
  * @import { StateDocument } from '../base/protocol.js'
- * @import { Store } from '../base/store.js'
+ * @import { Now, Store } from '../base/store.js'
  * @import { Commands } from '../connection/commands.js'
  * @import { Menu } from './menu.js'
  *
@@ -43,6 +43,7 @@ export class Bar {
   #trail = new Trail(() => this.#showBack());
   /** The button of the strip that is open. @type {?HTMLElement} */
   #opener = null;
+  /** @type {(now: Now) => void} */
   #showStrip = () => {};
   /** @type {?HTMLElement} */
   #back = null;
@@ -74,9 +75,8 @@ export class Bar {
       if (shown !== before) this.#open(null);
     });
     store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes, state?.swings, state?.navigation],
-      () => this.#showStrip());
-    store.subscribe(({ state, header, prepares, preparedCamera }) =>
-      [state?.cues, state?.cue, header?.view, prepares, preparedCamera === undefined], () => this.#showStrip());
+      () => this.#showStrip(store.now));
+    store.subscribe(shownOf, () => this.#showStrip(store.now));
     store.subscribe(({ points, language }) => [points, language], () => this.#showPoint());
     document.addEventListener('keydown', (event) => this.#key(event));
   }
@@ -174,7 +174,7 @@ export class Bar {
     const { content, show } = build();
     this.#strip.append(...content);
     this.#showStrip = show;
-    show();
+    show(this.#store.now);
   }
 
   #views() {

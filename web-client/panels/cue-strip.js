@@ -1,11 +1,12 @@
 import { cueAfter, cueNames } from '../base/cues.js';
 import { button, element } from '../base/element.js';
+import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { rows } from './controls.js';
 import { stateOf } from './section.js';
 
 /**
- * @import { Store } from '../base/store.js'
+ * @import { Now, Store } from '../base/store.js'
  * @import { Pictures } from './pictures.js'
  * @import { Presentation } from './presentation.js'
  */
@@ -50,7 +51,7 @@ export function cueStrip({ store, pictures, presentation }) {
   presenter.append(element('div', { className: 'cues' }, before, list.element, after));
   return {
     content: [presenter],
-    show() {
+    show: onChange(shownOf, () => {
       const { cues, cue } = state();
       const { prepares, preparedCamera } = store.now;
       const shown = cue?.name ?? '';
@@ -68,6 +69,15 @@ export function cueStrip({ store, pictures, presentation }) {
       }
       before.hidden = after.hidden = Object.keys(cues).length < 2;
       list.show(cueNames(cues).map((name) => [name, { isShown: name === shown, isPrepared: name === prepares }]));
-    },
+    }),
   };
+}
+
+/** All that the strip depends on, also for its pictures: of the view only its size. @param {Now} now */
+export function shownOf({ state, header, prepares, preparedCamera }) {
+  const { cues, cue, renderer, scene } = state ?? {};
+  return [
+    cues, cue, header?.view.width, header?.view.height, renderer?.mode, renderer?.wireframe, scene?.file, prepares,
+    preparedCamera === undefined,
+  ];
 }

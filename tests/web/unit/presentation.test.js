@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, beforeEach, test } from 'node:test';
-import { Store } from '../../../web-client/base/store.js';
+import { Store, onChange } from '../../../web-client/base/store.js';
+import { shownOf } from '../../../web-client/panels/cue-strip.js';
 import { Presentation } from '../../../web-client/panels/presentation.js';
 import { FakeWindow, replaceGlobals } from './fakes.js';
 
@@ -108,5 +109,29 @@ test('it ends where another has control, or the cue is gone, also after a lost c
       page.set({ role: 'control', steers: true, hasPicture: true, ...end });
       assert.equal(page.prepares(), null, JSON.stringify({ lost, end }));
     }
+  }
+});
+
+test('the strip follows what it shows, and not each frame and each camera', () => {
+  let count = 0;
+  const show = onChange(shownOf, () => { count += 1; });
+  const renderer = { mode: 'realistic', wireframe: false };
+  const now = {
+    ...page.store.now, state: { cues: CUES, cue: { name: 'Arrival' }, renderer, scene: { file: 'car' } },
+    header: { view: { width: 20, height: 10 } },
+  };
+  show(now);
+  show({ ...now, header: { view: { width: 20, height: 10 } }, state: { ...now.state, camera: {}, renderer: { ...renderer } } });
+  show({ ...now, preparedCamera: undefined, points: true });
+  assert.equal(count, 1);
+  const others = [
+    { header: { view: { width: 30, height: 10 } } }, { header: { view: { width: 20, height: 11 } } }, { prepares: 'Door' },
+    { preparedCamera: {} }, { state: { ...now.state, cues: {} } }, { state: { ...now.state, cue: {} } },
+    { state: { ...now.state, renderer: { ...renderer, wireframe: true } } },
+    { state: { ...now.state, renderer: { ...renderer, mode: 'fast' } } }, { state: { ...now.state, scene: { file: 'b' } } },
+  ];
+  for (const [i, other] of others.entries()) {
+    show({ ...now, ...other });
+    assert.equal(count, 2 + i, JSON.stringify(other));
   }
 });
