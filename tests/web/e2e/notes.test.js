@@ -40,9 +40,17 @@ for (const [name, size] of Object.entries(SIZES)) {
       menu = page.locator('[data-section="notes"]');
       await page.locator('#menu-button').tap();
       await menu.locator('summary').tap();
-      await presenter.wire.quiet(500);
+      await field().waitFor();
+      await until('the menu in the inset', () => (size.width > 600 ? inset().right > 380 : inset().bottom > 0.6 * size.height));
+      // The view is measured after the layout of a display frame.
+      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      await isShown();
+      // With another angle of view it is fitted from another distance, also where that was fitted before.
+      const { eye, fov } = state().camera;
+      await presenter.say({ type: 'patch', patch: { camera: { fov: fov + 5 } } });
       await presenter.say({ type: 'fit' }); // into what the menu leaves free
-      await presenter.wire.quiet(500);
+      await until('the fit', () => state().camera.fov !== fov && String(state().camera.eye) !== String(eye));
+      await isShown();
     });
 
     after(async () => {
@@ -52,6 +60,8 @@ for (const [name, size] of Object.entries(SIZES)) {
 
     const state = () => presenter.wire.state;
     const until = (what, get) => presenter.wire.until(what, get);
+    /** Waits for a still picture of the state that is here. */
+    const isShown = async () => presenter.shows((await presenter.wire.stillOf(presenter.wire.revision)).frame);
     const button = (label) => menu.getByRole('button', { name: label, exact: true });
     const lines = (text) => page.locator('#lines').getByText(text);
     const undo = () => page.locator('#lines').getByRole('button', { name: 'Undo' }).tap();
@@ -63,9 +73,10 @@ for (const [name, size] of Object.entries(SIZES)) {
       await button('Note at the middle').click();
       await until(text, () => Object.keys(state().markers).length > before);
     };
+    const inset = () => presenter.wire.sent.findLast(({ type }) => type === 'resize').inset;
     /** Of what the menu leaves free. */
     const middle = () => {
-      const { top, right, bottom, left } = presenter.wire.sent.findLast(({ type }) => type === 'resize').inset;
+      const { top, right, bottom, left } = inset();
       return [(left + size.width - right) / 2, (top + size.height - bottom) / 2];
     };
     const labelIsAt = ([x, y]) => page.waitForFunction(([wantedX, wantedY]) => {
@@ -98,8 +109,8 @@ for (const [name, size] of Object.entries(SIZES)) {
       const { view } = state().markers['note 1'];
       await presenter.say({ type: 'patch', patch: { camera: { eye: [5, 2, 0], fov: 30 } } });
       await presenter.say({ type: 'fit' });
-      await until('the other view', () => state().camera.fov === 30);
-      await presenter.wire.quiet(500);
+      await until('the other view, fitted', () => state().camera.fov === 30 && String(state().camera.eye) !== '5,2,0');
+      await isShown();
       await add('Dent');
       assert.equal(state().markers['note 2'].view.fov, 30);
       await menu.getByRole('button', { name: /^Gap too wide/ }).tap();
@@ -170,7 +181,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     test('where there is no part, there is no note, and its text is kept', async () => {
       await presenter.say({ type: 'patch', patch: { camera: { eye: [0, 50, 0], focus: [0, 60, 0], up: [0, 0, 1] } } });
       await until('the sky', () => state().camera.focus[1] === 60);
-      await presenter.wire.quiet(500);
+      await isShown();
       await field().fill('Nothing');
       await button('Note at the middle').click();
       await lines('There is no part in the middle of the view.').waitFor();
