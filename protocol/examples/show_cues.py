@@ -64,7 +64,7 @@ def exactly(wanted, now):
         cue["sections"] = replacing(wanted["sections"], now.get("sections") or {})
     if wanted.get("nodes") is not None:
         present = now.get("nodes") or {}
-        nodes = {node: replacing(members, present.get(node) or {}) if members else members
+        nodes = {node: replacing(members, present.get(node) or {}) if members is not None else None
                  for node, members in wanted["nodes"].items()}
         cue["nodes"] = replacing(nodes, present)
     if wanted.get("selection") is not None:
