@@ -81,11 +81,13 @@ for (const [name, size] of Object.entries(SIZES)) {
       await button('Move down').tap();
       await until('the order', () => state().cues.Far.order === 2);
       const before = state().cues.Far;
-      await presenter.say({ type: 'patch', patch: { camera: { fov: 70 } } });
+      await presenter.say({ type: 'patch', patch: { camera: { fov: 70 }, sections: { cut: { normal: [1, 0, 0] } } } });
       await button('Save what is shown here').tap();
-      await until('the new look', () => state().cues.Far.camera.fov === 70);
+      await until('the new look', () => state().cues.Far.camera.fov === 70 && state().cues.Far.sections.cut);
+      await presenter.say({ type: 'patch', patch: { sections: null } });
       await page.locator('#lines').getByRole('button', { name: 'Undo' }).tap();
       await until('the look before', () => state().cues.Far.camera.fov === before.camera.fov);
+      assert.deepEqual(state().cues.Far, before);
       await menu.getByRole('textbox', { name: 'New name of Far' }).fill('Wide');
       await button('Rename').tap();
       await until('the new name', () => state().cues.Wide && !state().cues.Far);
@@ -177,6 +179,38 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.locator('#prepare').waitFor({ state: 'hidden' });
       await button('Previous cue', strip()).tap();
       await until('the first cue', () => state().cue.name === 'Arrival');
+    });
+
+    test('what is prepared stays through a lost connection, and ends where the picture of all is moved', async () => {
+      const image = page.locator('#prepare img');
+      const sharp = (other) => page.waitForFunction((address) => {
+        const shown = document.querySelector('#prepare img');
+        return shown.src !== address && shown.naturalWidth === innerWidth;
+      }, other);
+      await button('Prepare', strip()).tap();
+      await sharp('');
+      await presenter.finger('touchStart', [{ id: 0, x: 200, y: 300 }]);
+      await presenter.finger('touchMove', [{ id: 0, x: 230, y: 310 }]);
+      await presenter.finger('touchMove', [{ id: 0, x: 260, y: 320 }]);
+      await presenter.finger('touchEnd', []);
+      await button('Keep this view', strip()).waitFor();
+      const before = await image.getAttribute('src');
+      const { connections } = presenter.wire;
+      await page.evaluate(() => window.sockets.at(-1).close());
+      await until('another connection', () => presenter.wire.connections > connections && state()?.cue);
+      await presenter.glance();
+      await sharp(before);
+      await button('Keep this view', strip()).waitFor();
+      await line('Only you see “Close” until you take it.').waitFor();
+      assert.equal(state().cue.name, 'Arrival');
+      await presenter.screenshot(`cues-${name}-prepare-again`);
+      await page.locator('#bar').getByRole('button', { name: 'Fit all' }).tap();
+      await page.locator('#prepare').waitFor({ state: 'hidden' });
+      await page.locator('#bar').getByRole('button', { name: 'Cues' }).tap();
+      await strip().waitFor({ state: 'hidden' });
+      await page.locator('#menu-button').tap();
+      await button('Present').tap();
+      await chip('Arrival', true).waitFor();
     });
 
     test('one who steers meanwhile stops the way, and the next cue begins there', async () => {
