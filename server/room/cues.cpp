@@ -27,7 +27,9 @@ void lay_cue(const protocol::CueState& cue, protocol::State& state) {
     state.section_box = cue.section_box;
 }
 
-std::string no_cue_named(const std::string& name) { return "there is no cue '" + name + "'"; }
+Error no_cue_named(const std::string& name) {
+    return Error{{}, code::unknown_cue, "there is no cue '" + name + "'"};
+}
 
 std::vector<Error> problems_of(const std::string& name, const protocol::CueState& cue,
                                const protocol::State& starting, const scene::PlacedScene& placed) {

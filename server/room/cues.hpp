@@ -14,8 +14,7 @@ scene::Camera camera_of(const protocol::CueState& cue);
 /// Lays over `state` what a cue shows, but for the camera. The selection gets its id alone.
 void lay_cue(const protocol::CueState& cue, protocol::State& state);
 
-/// The sentence of `unknown-cue`.
-std::string no_cue_named(const std::string& name);
+protocol::Error no_cue_named(const std::string& name);
 
 /// All that does not go with the scene of a cue called `name`, an error each. `starting`: the scene's own
 /// state.

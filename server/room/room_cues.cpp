@@ -28,7 +28,8 @@ std::optional<std::string> Room::cue_named(const Received& received, const proto
         return refuse(code::bad_message, "a cue is named either by 'name' or by 'step'");
     if (cue.name) {
         if (state_.cues->contains(*cue.name)) return cue.name;
-        return refuse(code::unknown_cue, no_cue_named(*cue.name));
+        const Error none = no_cue_named(*cue.name);
+        return refuse(none.code.c_str(), none.message);
     }
     const std::vector<std::string> names = protocol::names_in_order(state_.cues);
     const auto shown = state_.cue ? std::ranges::find(names, state_.cue->name) : names.end();

@@ -69,8 +69,7 @@ tl::expected<Room::Laid, Error> Room::laid(const protocol::OtherView& other) {
     Laid laid{state_, scene_};
     if (other.cue) {
         const auto cue = state_.cues->find(*other.cue);
-        if (cue == state_.cues->end())
-            return tl::unexpected(Error{{}, code::unknown_cue, no_cue_named(*other.cue)});
+        if (cue == state_.cues->end()) return tl::unexpected(no_cue_named(*other.cue));
         lay_cue(cue->second, laid.state);
         if (auto error = use_laid_nodes(laid.state, laid.placed)) return tl::unexpected(*std::move(error));
         laid.state.camera = state_of(camera_of(cue->second), laid.placed->bounds);
@@ -109,10 +108,10 @@ plan::View Room::view_of_laid(const Laid& laid) const {
 
 void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     if (!received.message.id) {  // nobody could tell the picture from a frame
-        if (snapshot.cue && !state_.cues->contains(*snapshot.cue))
-            return reject(received, code::unknown_cue, no_cue_named(*snapshot.cue));
-        accepted_ = true;
-        return;
+        accepted_ = !snapshot.cue || state_.cues->contains(*snapshot.cue);
+        if (accepted_) return;
+        const Error none = no_cue_named(*snapshot.cue);
+        return reject(received, none.code.c_str(), none.message);
     }
     auto laid = this->laid({snapshot.camera, snapshot.cue});
     if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);

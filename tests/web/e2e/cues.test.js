@@ -206,6 +206,8 @@ for (const [name, size] of Object.entries(SIZES)) {
       await presenter.screenshot(`cues-${name}-prepare-again`);
       await page.locator('#bar').getByRole('button', { name: 'Fit all' }).tap();
       await page.locator('#prepare').waitFor({ state: 'hidden' });
+      const lastButton = await page.locator('#bar button:visible').last().boundingBox();
+      assert.ok(lastButton.x + lastButton.width <= size.width, `the bar ends at ${lastButton.x + lastButton.width}`);
       await page.locator('#bar').getByRole('button', { name: 'Cues' }).tap();
       await strip().waitFor({ state: 'hidden' });
       await page.locator('#menu-button').tap();
