@@ -177,10 +177,10 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     if (!state) return tl::unexpected(state.error());
     auto nodes = node_states(*scene_->scene, state->nodes);
     if (!nodes) return tl::unexpected(nodes.error());
+    scene_ = std::make_shared<const scene::PlacedScene>(scene::place(scene_->scene, *std::move(nodes)));
     for (const auto& [name, cue] : *state->cues)
         if (auto problems = problems_of(name, cue, starting_, *scene_); !problems.empty())
             return tl::unexpected(std::move(problems.front()));
-    scene_ = std::make_shared<const scene::PlacedScene>(scene::place(scene_->scene, *std::move(nodes)));
     view_size_ = header.view;
     at_home_ = header.at_home;
     state_ = *std::move(state);

@@ -114,8 +114,7 @@ TEST_CASE("cues: one may be seen from another place than its own, which stays") 
 
 TEST_CASE("cues: a picture from another place and the cue from there have one camera") {
     WithCues stage;
-    stage.say("a",
-              R"({"type":"patch","patch":{"cues":{"Bare":{"camera":{"eye":[-4,3,8],"up":[0,1,0]}}}}})");
+    stage.say("a", R"({"type":"patch","patch":{"cues":{"Bare":{"camera":{"eye":[-4,3,8],"up":[0,1,0]}}}}})");
     const json camera{{"eye", {0, 3, 9}}};
     stage.say(
         "b",
