@@ -16,6 +16,7 @@ constexpr double kTolerance = 1e-4;  // in radii
 constexpr double kLeastArc = 30 * std::numbers::pi / 180;
 constexpr double kLongestStep = 60 * std::numbers::pi / 180;
 constexpr double kStraightness = 1e-6;
+constexpr std::size_t kMostTested = 16;  // points of a run whenever it goes on
 /// In squares of the points' extent: what spans less has no plane.
 constexpr double kLeastArea = 1e-6;
 constexpr double kClearlyOff = 1e-3;  // of the radius: ten times what noise may do to a circle
@@ -188,13 +189,20 @@ std::optional<Run> arc_around_edge(std::span<const glm::dvec3> chain, std::size_
 
 std::vector<Run> straight_runs(std::span<const glm::dvec3> chain, double rounding) {
     std::vector<Run> runs;
-    const auto goes_on = [&](const Run& run, std::size_t next) {
-        const glm::dvec3 whole = chain[next] - chain[run.first], part = chain[run.last] - chain[run.first];
+    const auto is_between = [&](std::size_t at, const Run& run) {
+        const glm::dvec3 whole = chain[run.last] - chain[run.first], part = chain[at] - chain[run.first];
         const double length = safe_length(whole);
         const glm::dvec3 direction = unit(whole);
         const double along = glm::dot(direction, part);
         return along > 0 && along < length &&
                safe_length(part - direction * along) <= kStraightness * length + rounding;
+    };
+    // Points all along the run, as what each of them is off by adds up in a curve.
+    const auto goes_on = [&](const Run& run, std::size_t next) {
+        const std::size_t count = run.last - run.first, steps = std::min(count, kMostTested);
+        for (std::size_t step = 1; step <= steps; ++step)
+            if (!is_between(run.first + count * step / steps, {run.first, next})) return false;
+        return true;
     };
     for (std::size_t next = 1; next < chain.size(); ++next) {
         if (!runs.empty() && goes_on(runs.back(), next))

@@ -106,6 +106,10 @@ private:
             const double angle = angle_between(*first, *second);
             if (angle > kParallelTolerance)
                 return problem("the two are not parallel: they are at " + degrees_text(angle));
+            if (second->is_plane && !first->is_plane) {
+                const glm::dvec3 to_foot = second->vector * glm::dot(second->vector, at_[1].at - at_[0].at);
+                return Measured{safe_length(to_foot), {}, {world(at_[0].at), world(at_[0].at + to_foot)}, {}};
+            }
         }
         const glm::dvec3 offset = at_[1].at - at_[0].at;
         const glm::dvec3 along = first->vector * glm::dot(first->vector, offset);

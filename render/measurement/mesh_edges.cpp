@@ -69,11 +69,13 @@ std::size_t MeshEdges::chain_of(std::size_t at) const {
     return static_cast<std::size_t>(next - first_of_chain_.begin()) - 1;
 }
 
-std::vector<unsigned> MeshEdges::triangles_near(const math::Bounds& box) const {
+std::optional<std::vector<unsigned>> MeshEdges::triangles_near(const math::Bounds& box,
+                                                               std::size_t most) const {
     std::vector<unsigned> near;
     triangle_blocks_.visit(box, [&](unsigned triangle) {
-        if (overlap(triangle_bounds(triangle), box)) near.push_back(triangle);
+        if (near.size() <= most && overlap(triangle_bounds(triangle), box)) near.push_back(triangle);
     });
+    if (near.size() > most) return {};
     std::sort(near.begin(), near.end());
     return near;
 }

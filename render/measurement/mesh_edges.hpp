@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,8 +30,9 @@ public:
         return std::span(chain_vertices_)
             .subspan(first_of_chain_[index], first_of_chain_[index + 1] - first_of_chain_[index]);
     }
-    /// Triangles whose boxes overlap with this one, by rising number.
-    std::vector<unsigned> triangles_near(const math::Bounds& box) const;
+    /// Triangles whose boxes overlap with this one, by rising number. None if there are more than `most`.
+    std::optional<std::vector<unsigned>> triangles_near(
+        const math::Bounds& box, std::size_t most = std::numeric_limits<std::size_t>::max()) const;
     /// Chains that have an edge whose box overlaps with this one, by rising number.
     std::vector<std::size_t> chains_near(const math::Bounds& box) const;
 

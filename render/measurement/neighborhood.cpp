@@ -15,6 +15,7 @@ constexpr double kReach = 4;
 constexpr double kWidth = 2;          // the hit may be at the cone's edge
 constexpr double kOccluderReach = 8;  // what is in the way is looked for from there on
 constexpr double kOnSurface = 1e-3;   // what is nearer than this behind a surface lies on it
+constexpr std::size_t kMostTriangles = 20'000;
 /// Rounding of the hit point, in its distance from the ray's origin.
 constexpr double kHitRounding = 1e-7;
 
@@ -75,9 +76,8 @@ std::optional<Neighborhood> Neighborhood::around(const scene::PlacedScene& place
     if (!is_finite(result.hit_) || !is_finite(result.eye_) || !(result.radius_ >= 0)) return {};
     if (!(std::abs(scene::relative_determinant(result.linear_)) > kHitRounding)) return {};
     result.edges_ = &memo.of(placed.scene, data->geometry);
-    result.triangles_ = result.edges_->triangles_near(result.box_along_ray(kReach, kReach));
     result.hit_triangle_ = result.nearest_triangle();
-    result.find_occluders();
+    result.find_triangles();
     return result;
 }
 
@@ -107,9 +107,13 @@ Neighborhood::Corners Neighborhood::corners_of(unsigned triangle) const {
     return {relative(t.x), relative(t.y), relative(t.z)};
 }
 
-void Neighborhood::find_occluders() {
+void Neighborhood::find_triangles() {
+    const auto before = edges_->triangles_near(box_along_ray(kOccluderReach, kReach), kMostTriangles);
+    is_dense_ = !before;
+    if (is_dense_) return;
+    triangles_ = edges_->triangles_near(box_along_ray(kReach, kReach)).value();
     const bool hit_front = hit_triangle_ && faces_ray(*hit_triangle_);
-    for (const unsigned near : edges_->triangles_near(box_along_ray(kOccluderReach, kReach)))
+    for (const unsigned near : *before)
         if (!hit_front || faces_ray(near)) occluders_.push_back(corners_of(near));
 }
 
@@ -137,8 +141,9 @@ std::vector<std::size_t> Neighborhood::chains() const {
 std::optional<unsigned> Neighborhood::nearest_triangle() const {
     std::optional<unsigned> best;
     double least = rounding();
+    const auto touched = edges_->triangles_near(box_around(glm::dvec3(0), least));
     for (const bool faces : {true, false})
-        for (const unsigned triangle : triangles_) {
+        for (const unsigned triangle : touched.value()) {
             if (faces_ray(triangle) != faces) continue;
             const double distance = distance_to_triangle(corners_of(triangle));
             if (!(distance < least)) continue;

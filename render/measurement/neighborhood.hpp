@@ -40,6 +40,9 @@ public:
     /// Where between two points, 0 to 1, a line is closest to the ray.
     double closest_to_ray(const glm::dvec3& a, const glm::dvec3& b) const;
 
+    /// True if so many triangles are near that no finger tells them apart: triangles() has none then, and
+    /// whatever is asked is visible.
+    bool is_dense() const { return is_dense_; }
     /// Triangles in two cones' widths, and chains, that may come within 4 radii.
     const std::vector<unsigned>& triangles() const { return triangles_; }
     std::vector<std::size_t> chains() const;
@@ -60,7 +63,7 @@ private:
     double rounding() const;
     std::optional<unsigned> nearest_triangle() const;
     bool is_clipped(const glm::dvec3& relative_point) const;
-    void find_occluders();
+    void find_triangles();
 
     const MeshEdges* edges_ = nullptr;
     std::span<const scene::ClipPlane> clip_planes_;
@@ -68,7 +71,7 @@ private:
     glm::dvec3 hit_{0}, world_hit_{0};
     glm::dvec3 eye_{0}, direction_{0};
     double tangent_ = 0, radius_ = 0;
-    bool is_mirrored_ = false;
+    bool is_mirrored_ = false, is_dense_ = false;
     std::vector<unsigned> triangles_;
     std::optional<unsigned> hit_triangle_;
     std::vector<Corners> occluders_;

@@ -112,11 +112,8 @@ public:
         : around_(around), mesh_(around.edges().mesh()), to_(to) {}
 
     std::vector<Candidate> found() {
-        if (accepts(Snap::midpoint) || accepts(Snap::center) || accepts(Snap::edge))
-            for (const std::size_t index : around_.chains()) add_chain(around_.edges().chain(index));
-        if (accepts(Snap::vertex)) add_vertices();
         const auto triangle = around_.hit_triangle();
-        if (triangle && accepts(Snap::loop)) add_loops(*triangle);
+        if (!around_.is_dense()) add_features(triangle);
         if (triangle && accepts(Snap::plane)) add_plane(*triangle);
         if (accepts(Snap::point)) add(Rank::point, Snap::point, glm::dvec3(0), {around_.hit()});
         return std::move(found_);
@@ -134,6 +131,13 @@ private:
 
     void add(Rank rank, Snap snap, const glm::dvec3& seen, std::vector<glm::dvec3> points) {
         found_.push_back({rank, snap, around_.offset(seen), around_.depth(seen), seen, std::move(points)});
+    }
+
+    void add_features(const std::optional<unsigned>& hit_triangle) {
+        if (accepts(Snap::midpoint) || accepts(Snap::center) || accepts(Snap::edge))
+            for (const std::size_t index : around_.chains()) add_chain(around_.edges().chain(index));
+        if (accepts(Snap::vertex)) add_vertices();
+        if (hit_triangle && accepts(Snap::loop)) add_loops(*hit_triangle);
     }
 
     void add_vertices() {
@@ -296,15 +300,15 @@ private:
     /// tells across which edges that have a twin.
     template <typename IsJoined>
     std::vector<unsigned> region(unsigned triangle, const IsJoined& is_joined, std::size_t limit) const {
-        std::vector<unsigned> region{triangle}, sorted = region;
+        std::vector<unsigned> region{triangle};
+        std::unordered_set<unsigned> known{triangle};
         for (std::size_t next = 0; next < region.size(); ++next)
             for (unsigned half_edge = 3 * region[next]; half_edge < 3 * region[next] + 3; ++half_edge) {
                 const unsigned twin = mesh_.twin(half_edge);
                 if (twin == WeldedMesh::kNone || !is_joined(half_edge)) continue;
-                const auto place = std::lower_bound(sorted.begin(), sorted.end(), twin / 3);
-                if (place != sorted.end() && *place == twin / 3) continue;
+                if (known.contains(twin / 3)) continue;
                 if (region.size() == limit) return region;
-                sorted.insert(place, twin / 3);
+                known.insert(twin / 3);
                 region.push_back(twin / 3);
             }
         return region;

@@ -258,6 +258,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     record({}, protocol::LogLine::Opened{scene.name, scene.sha256, scene.changes, scene.up_axis});
     loaded_ = std::move(scene);
     scene_ = loaded_.placed;
+    mesh_edges_ = {};
     starting_ = starting_state(loaded_, aspect(), cover());
     protocol::State next = starting_;
     next.navigation = state_.navigation;

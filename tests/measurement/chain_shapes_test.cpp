@@ -117,6 +117,20 @@ TEST_CASE("straight runs are as long as they can be") {
     CHECK((runs[2].first == 4 && runs[2].last == 6));
 }
 
+TEST_CASE("no point of a run is off by more than is allowed, however fine the curve") {
+    std::vector<glm::dvec3> curve;
+    for (int i = 0; i <= 200; ++i) {
+        const double angle = 5e-4 * i;
+        curve.emplace_back(1e4 * std::sin(angle), 1e4 * (1 - std::cos(angle)), 0);
+    }
+    constexpr double kRounding = 0.12;
+    for (const auto& run : measurement::straight_runs(curve, kRounding)) {
+        const glm::dvec3 along = glm::normalize(curve[run.last] - curve[run.first]);
+        for (std::size_t i = run.first; i <= run.last; ++i)
+            CHECK(glm::length(glm::cross(along, curve[i] - curve[run.first])) < 1.05 * kRounding);
+    }
+}
+
 TEST_CASE("a run does not turn back, nor around a circle") {
     const std::vector<glm::dvec3> back{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}};
     CHECK(measurement::straight_runs(back, 0).size() == 2);

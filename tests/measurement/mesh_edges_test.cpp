@@ -177,6 +177,8 @@ TEST_CASE("what is near a box is found") {
             if (measurement::overlap(bounds, around)) triangles.push_back(t);
         }
         CHECK(edges.triangles_near(around) == triangles);
+        CHECK(edges.triangles_near(around, triangles.size()).has_value());
+        if (!triangles.empty()) CHECK_FALSE(edges.triangles_near(around, triangles.size() - 1).has_value());
         std::vector<std::size_t> chains;
         for (std::size_t i = 0; i < edges.chain_count(); ++i)
             for (std::size_t k = 1; k < edges.chain(i).size(); ++k) {

@@ -340,6 +340,21 @@ TEST_CASE("vertices count where a mesh is coarse, and points where it is fine") 
     CHECK(any->feature.points[0] == vertex);
 }
 
+TEST_CASE("where no finger tells triangles apart, planes and points alone are found") {
+    const auto sheet = [](unsigned columns) {
+        return surface(columns, columns, [](double u, double v) { return glm::dvec3(u - 0.5, v - 0.5, 0); });
+    };
+    const glm::dvec3 corner(0.5, 0.5, 0), inside = corner - glm::dvec3(0.001, 0.001, 0);
+    const auto snap_of = [&](unsigned columns, const std::vector<Snap>& to = {}) {
+        const auto found = snapped_at({}, part(sheet(columns)), inside, to);
+        return found ? std::optional(found->feature.snap) : std::nullopt;
+    };
+    CHECK(snap_of(200) == Snap::vertex);  // some 1,000 near
+    CHECK(snap_of(1500) == Snap::plane);  // more than 20,000
+    CHECK(snap_of(1500, {Snap::vertex, Snap::loop}) == std::nullopt);
+    CHECK(snap_of(1500, {Snap::point}) == Snap::point);
+}
+
 TEST_CASE("only kinds that are asked for are found") {
     const auto parts = part(box({1, 1, 1}));
     const glm::dvec3 corner(0.99, 0.98, 1), middle(0.3, 0.2, 1);
