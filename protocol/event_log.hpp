@@ -55,7 +55,13 @@ struct LogHeader {
         Fly fly;
     };
     std::optional<Flight> flight;  ///< that was going on
-    std::int64_t revision = 0;     ///< of the state; 0: not known
+    struct Walls {
+        ViewState camera, guide;
+        glm::dvec3 velocity{0}, spin{0};  ///< scene units and radians a second
+        double due = 0;                   ///< ms until the next step
+    };
+    std::optional<Walls> walls;  ///< the camera of hosts, where that was behind
+    std::int64_t revision = 0;   ///< of the state; 0: not known
 };
 
 struct LogLine {

@@ -58,6 +58,17 @@ void describe(V& v, const LogHeader::Flight*) {
 }
 
 template <class V>
+void describe(V& v, const LogHeader::Walls*) {
+    v.required("camera", &LogHeader::Walls::camera, Object<ViewState>{}, "Where it was.");
+    v.required("guide", &LogHeader::Walls::guide, Object<ViewState>{},
+               "What it followed, on the way to the room's camera at the speeds allowed.");
+    v.required("velocity", &LogHeader::Walls::velocity, kPosition, "Of the eye, in scene units a second.");
+    v.required("spin", &LogHeader::Walls::spin, kPosition,
+               "Of the view, about an axis of the world, in radians a second.");
+    v.required("due", &LogHeader::Walls::due, Number{0, 16}, "Milliseconds until its next step.");
+}
+
+template <class V>
 void describe(V& v, const LogHeader*) {
     v.required("scene", &LogHeader::scene, kName, "Name of the scene that is shown.");
     v.required("sceneSha256", &LogHeader::scene_sha256, kName, "SHA-256 of the scene's file.");
@@ -75,6 +86,8 @@ void describe(V& v, const LogHeader*) {
     v.optional("frames", &LogHeader::frames, List<Object<LoggedFrame>>{{}, 0, 1000},
                "Frames that clients may still name.");
     v.optional("flight", &LogHeader::flight, Object<LogHeader::Flight>{}, "The flight that was going on.");
+    v.optional("walls", &LogHeader::walls, Object<LogHeader::Walls>{},
+               "The camera of hosts, where that was on its way.");
     v.optional("revision", &LogHeader::revision, Integer{}, "Of the state; only in a shared room's log.");
 }
 

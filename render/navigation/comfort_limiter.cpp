@@ -136,7 +136,7 @@ double share_of(double length, double most) { return length > most ? most / leng
 
 bool ComfortLimiter::rests_at(const scene::Camera& target) const {
     constexpr glm::dvec3 kNone(0);
-    return pose_ == target && velocity_ == kNone && spin_ == kNone;
+    return motion_.pose == target && motion_.velocity == kNone && motion_.spin == kNone;
 }
 
 void ComfortLimiter::rest(const scene::Camera& pose) { *this = ComfortLimiter(pose); }
@@ -144,40 +144,41 @@ void ComfortLimiter::rest(const scene::Camera& pose) { *this = ComfortLimiter(po
 /// Around the focus it goes no faster than an eye can stop within a quarter of the distance: the eye behind
 /// it does not cut across.
 void ComfortLimiter::move_guide(const scene::Camera& target, const ComfortLimits& limits) {
-    const double from = scene::focus_distance(guide_), to = scene::focus_distance(target);
-    const double step = limits.units_per_second * kStep, turn = turn_length(guide_, target);
-    const bool around_eye = looks_around(guide_, target);
+    const double from = scene::focus_distance(motion_.guide), to = scene::focus_distance(target);
+    const double step = limits.units_per_second * kStep, turn = turn_length(motion_.guide, target);
+    const bool around_eye = looks_around(motion_.guide, target);
     const double distance = std::min(from + step, std::max(from, to));  // at most, within this step
     const double orbit = around_eye ? 0 : distance * (turn + std::abs(std::log(to / from)));
-    const double pan =
-        around_eye ? glm::distance(guide_.eye, target.eye) : glm::distance(guide_.focus, target.focus);
+    const double pan = around_eye ? glm::distance(motion_.guide.eye, target.eye)
+                                  : glm::distance(motion_.guide.focus, target.focus);
     const double part =
         std::min({share_of(orbit + pan, step),
                   share_of(orbit, std::sqrt(limits.units_per_second_squared * distance / 2) * kStep),
                   share_of(turn, turn_limit(limits).speed * kStep)});
-    const scene::Camera moved = part_of_way(guide_, target, part);
-    guide_ = moved == guide_ ? target : moved;  // where the step is finer than double holds
+    const scene::Camera moved = part_of_way(motion_.guide, target, part);
+    motion_.guide = moved == motion_.guide ? target : moved;  // where the step is finer than double holds
 }
 
 void ComfortLimiter::step(const scene::Camera& target, const ComfortLimits& limits) {
-    if (glm::distance(pose_.eye, target.eye) > kLongestWay * limits.units_per_second) return rest(target);
+    if (glm::distance(motion_.pose.eye, target.eye) > kLongestWay * limits.units_per_second)
+        return rest(target);
     move_guide(target, limits);
-    const Turned turn = turned(pose_, guide_, spin_, turn_limit(limits));
-    const glm::dvec3 way = guide_.eye - pose_.eye;
-    const NextMotion motion = approach(way, velocity_, eye_limit(limits));
-    spin_ = turn.spin;
-    velocity_ = motion.velocity;
+    const Turned turn = turned(motion_.pose, motion_.guide, motion_.spin, turn_limit(limits));
+    const glm::dvec3 way = motion_.guide.eye - motion_.pose.eye;
+    const NextMotion motion = approach(way, motion_.velocity, eye_limit(limits));
+    motion_.spin = turn.spin;
+    motion_.velocity = motion.velocity;
     if (motion.arrives && turn.arrives) {
-        pose_ = guide_;
+        motion_.pose = motion_.guide;
         return;
     }
-    scene::Camera next = guide_;
-    if (is_stuck(pose_.eye, way, eye_limit(limits))) return rest(target);
-    if (!motion.arrives) next.eye = pose_.eye + velocity_ * kStep;
-    next.focus = next.eye + turn.basis.view * scene::focus_distance(guide_);
+    scene::Camera next = motion_.guide;
+    if (is_stuck(motion_.pose.eye, way, eye_limit(limits))) return rest(target);
+    if (!motion.arrives) next.eye = motion_.pose.eye + motion_.velocity * kStep;
+    next.focus = next.eye + turn.basis.view * scene::focus_distance(motion_.guide);
     next.up = turn.basis.up;
     if (!scene::is_valid_pose(next, 0)) return rest(target);
-    pose_ = scene::with_orthogonal_up(next);
+    motion_.pose = scene::with_orthogonal_up(next);
 }
 
 Behind behind(const scene::Camera& pose, const scene::Camera& target) {

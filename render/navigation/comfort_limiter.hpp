@@ -29,10 +29,21 @@ public:
     static constexpr double kStep = 0.016;     ///< s
     static constexpr double kLongestWay = 10;  ///< s
 
-    /// It rests at `pose`, a valid one with orthogonal up, as all targets must be.
-    explicit ComfortLimiter(const scene::Camera& pose) : pose_(pose), guide_(pose) {}
+    /// Where it is on its way.
+    struct Motion {
+        /// `guide` goes to the target at the speeds allowed, however suddenly it starts or stops.
+        scene::Camera pose, guide;
+        glm::dvec3 velocity{0};  ///< of the eye, units/s
+        glm::dvec3 spin{0};      ///< world axis, radians/s
+    };
 
-    const scene::Camera& pose() const { return pose_; }
+    /// It rests at `pose`, a valid one with orthogonal up, as all targets must be.
+    explicit ComfortLimiter(const scene::Camera& pose) : motion_{pose, pose} {}
+    /// It goes on from there; both cameras are valid, with orthogonal up.
+    explicit ComfortLimiter(const Motion& motion) : motion_(motion) {}
+
+    const scene::Camera& pose() const { return motion_.pose; }
+    const Motion& motion() const { return motion_; }
     /// It is there, and does not move.
     bool rests_at(const scene::Camera& target) const;
     /// Goes on by kStep.
@@ -42,11 +53,7 @@ private:
     void rest(const scene::Camera& pose);
     void move_guide(const scene::Camera& target, const ComfortLimits& limits);
 
-    scene::Camera pose_;
-    scene::Camera
-        guide_;  ///< on the way to the target at the speeds allowed, however suddenly it starts or stops
-    glm::dvec3 velocity_{0};  ///< of the eye, units/s
-    glm::dvec3 spin_{0};      ///< world axis, radians/s
+    Motion motion_;
 };
 
 /// How far `pose` is from `target`.

@@ -343,6 +343,9 @@ private:
     };
     /// Begins or ends what follows, in line with who is here, and with what moves.
     void use_walls();
+    std::optional<protocol::LogHeader::Walls> logged_walls() const;
+    /// Or what is wrong with them.
+    std::optional<protocol::Error> restore_walls(const protocol::LogHeader::Walls& walls);
     /// Its next step, at time_.
     void step_walls();
     /// Hosts have the present camera at once.

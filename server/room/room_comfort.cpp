@@ -1,5 +1,6 @@
 // The camera of hosts, who stand in the picture: it follows the room's at bearable speeds.
 #include <algorithm>
+#include <cmath>
 
 #include "room/room.hpp"
 
@@ -43,6 +44,29 @@ void Room::step_walls() {
 void Room::jump_walls() {
     walls_.reset();
     use_walls();
+}
+
+std::optional<protocol::LogHeader::Walls> Room::logged_walls() const {
+    if (!walls_ || !walls_->due) return std::nullopt;
+    const navigation::ComfortLimiter::Motion& motion = walls_->limiter.motion();
+    return protocol::LogHeader::Walls{view_state_of(motion.pose), view_state_of(motion.guide),
+                                      motion.velocity, motion.spin,
+                                      static_cast<double>((*walls_->due - time_).count()) / 1000};
+}
+
+std::optional<protocol::Error> Room::restore_walls(const protocol::LogHeader::Walls& walls) {
+    const navigation::ComfortLimiter::Motion motion{camera_of(walls.camera), camera_of(walls.guide),
+                                                    walls.velocity, walls.spin};
+    for (const scene::Camera& camera : {motion.pose, motion.guide})
+        if (!scene::is_valid_pose(camera, 0))
+            return protocol::Error{
+                {},
+                protocol::error_code::out_of_range,
+                "'walls': eye and focus must be apart, and up neither zero nor along the view"};
+    if (walls_)
+        walls_ =
+            Walls{navigation::ComfortLimiter(motion), time_ + SessionTime(std::llround(walls.due * 1000))};
+    return std::nullopt;
 }
 
 std::optional<protocol::WallsState> Room::walls_state() const {

@@ -165,6 +165,7 @@ protocol::LogHeader Room::header_of_now() const {
         header.flight = {flight_->client, flight_->id,
                          static_cast<double>((time_ - flight_->start).count()) / 1000, flight_->from,
                          flight_->asked};
+    header.walls = logged_walls();
     return header;
 }
 

@@ -209,6 +209,8 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     gestures_.restart(camera());
     update_visible();
     use_walls();
+    if (header.walls)
+        if (auto error = restore_walls(*header.walls)) return tl::unexpected(*std::move(error));
     if (header.revision > 0) document_ = protocol::StateDocument::next({}, state_, header.revision);
     return {};
 }

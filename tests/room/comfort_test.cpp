@@ -103,6 +103,45 @@ TEST_CASE("what only the walls do is not to be drawn") {
     CHECK(stage.room.visible() == visible);
 }
 
+TEST_CASE("a recording that begins while hosts are behind replays to the same walls") {
+    RecordingSink::Header header;
+    RoomOptions recorded, replaying;
+    recorded.recordings = {[&](auto, const auto&, RecordingSink::Header first) { header = std::move(first); },
+                           [](auto, const auto&) {}, [](auto) {}};
+    replaying.replaying = true;
+    Stage stage("ah", in_metres(), recorded);
+    stage.say("a", kFlick);
+    constexpr SessionTime kBegin = 205ms;
+    stage.at(kBegin);
+    REQUIRE(stage.say("a", R"({"type":"record","id":1,"action":"start","name":"flick"})"));
+    const auto read = protocol::decode_log_header(header("flick", "now"));
+    REQUIRE_MESSAGE(read, read.error().message);
+    Stage replay("", in_metres(), replaying);
+    REQUIRE(replay.room.restore(*read));
+    int steps = 0;
+    for (SessionTime at{0}; at < 6s; at += 7ms) {
+        stage.at(kBegin + at);
+        replay.at(at);
+        const json walls = stage.state().value("walls", json());
+        REQUIRE(replay.state().value("walls", json()) == walls);
+        steps += walls.is_null() ? 0 : 1;
+    }
+    CHECK(steps > 100);
+    CHECK_FALSE(stage.state().contains("walls"));
+}
+
+TEST_CASE("walls of a recording that are no camera are refused") {
+    auto header = Stage("ah", in_metres()).room.checkpoint()->header;
+    header.walls = protocol::LogHeader::Walls{};
+    header.walls->camera.eye = header.walls->camera.focus;
+    RoomOptions replaying;
+    replaying.replaying = true;
+    Stage replay("", in_metres(), replaying);
+    const auto restored = replay.room.restore(header);
+    REQUIRE_FALSE(restored);
+    CHECK(restored.error().message.find("'walls'") != std::string::npos);
+}
+
 TEST_CASE("nothing follows where no host is here, or comfort is off") {
     Stage stage("av", in_metres());
     stage.say("a", kFlick);

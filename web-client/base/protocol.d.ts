@@ -683,6 +683,45 @@ export type EventLogHeader = {
   version: 1;
   /** The size in force. */
   view: View;
+  /** The camera of hosts, where that was on its way. */
+  walls?: {
+    /** Where it was. */
+    camera: {
+      /** The centre of rotation. */
+      center: Array<number>;
+      /** Where the camera stands. */
+      eye: Array<number>;
+      /** What it looks at. */
+      focus: Array<number>;
+      /** The vertical angle of view in degrees. */
+      fov: number;
+      /** For clients to sort by: the lowest first, then those without one, by name. */
+      order?: number;
+      /** Which way is up in the image; unit, at right angles to the view. */
+      up: Array<number>;
+    };
+    /** Milliseconds until its next step. */
+    due: number;
+    /** What it followed, on the way to the room's camera at the speeds allowed. */
+    guide: {
+      /** The centre of rotation. */
+      center: Array<number>;
+      /** Where the camera stands. */
+      eye: Array<number>;
+      /** What it looks at. */
+      focus: Array<number>;
+      /** The vertical angle of view in degrees. */
+      fov: number;
+      /** For clients to sort by: the lowest first, then those without one, by name. */
+      order?: number;
+      /** Which way is up in the image; unit, at right angles to the view. */
+      up: Array<number>;
+    };
+    /** Of the view, about an axis of the world, in radians a second. */
+    spin: Array<number>;
+    /** Of the eye, in scene units a second. */
+    velocity: Array<number>;
+  };
 };
 
 export type EventLogLine = EventLogMessage | EventLogConnected | EventLogDisconnected | EventLogControl | EventLogOpened | EventLogDrawn | EventLogRevised;
