@@ -63,7 +63,9 @@ std::optional<scene::Camera> CameraMotion::ahead(double ms, double ahead) const 
     const double farther = std::min(speed(ms) * (ms - last.ms + ahead) / 1000, kFarthest);
     if (!(farther > kLeast)) return std::nullopt;
     const double way = way_between(second.camera, last.camera);
-    return on_the_way(second.camera, last.camera, 1 + farther / way);
+    scene::Camera camera = on_the_way(second.camera, last.camera, 1 + farther / way);
+    camera.fov = last.camera.fov;  // which would soon leave its range
+    return camera;
 }
 
 }  // namespace vrut::navigation

@@ -18,7 +18,7 @@ scene::Index geometry_of(const View& view, scene::Index node) {
 }
 
 std::shared_ptr<const CutSurface> cut_surface(const View& view, scene::Index node,
-                                              const scene::ClipPlane& plane, bool cap) {
+                                              const scene::ClipPlane& plane, bool cap, double spacing) {
     const auto at = static_cast<std::size_t>(node);
     const scene::Scene& scene = *view.scene->scene;
     const glm::dmat4& world = view.scene->world[at];
@@ -29,9 +29,7 @@ std::shared_ptr<const CutSurface> cut_surface(const View& view, scene::Index nod
     surface->capped = cap;
     surface->normal = -glm::dvec3(equation);
     surface->material = scene::cap_material(scene.material(view.scene->nodes[at].material));
-    if (cap && plane.hatched)
-        mesh::add_hatching(surface->cut, world, plane, kHatchingSpacing * view.scene->bounds.radius(),
-                           node % 2 != 0);
+    if (cap && plane.hatched) mesh::add_hatching(surface->cut, world, plane, spacing, node % 2 != 0);
     return surface;
 }
 
@@ -46,22 +44,22 @@ std::shared_ptr<const CutSurface> CutCache::find(const View& view, scene::Index 
                                                  DrawBudget& budget) {
     const auto at = static_cast<std::size_t>(node);
     const scene::ClipPlane& plane = view.clip_planes[number];
-    Entry entry{node,   view.scene->nodes[at].material, number,
-                plane,  view.scene->world[at],          plane.caps && is_solid(view, node),
-                nullptr};
+    Entry entry{node, view.scene->nodes[at].material, number, plane, view.scene->world[at]};
+    entry.solid = plane.caps && is_solid(view, node);
+    if (entry.solid && plane.hatched) entry.spacing = kHatchingSpacing * view.scene->bounds.radius();
     const auto before = [](const Entry& a, const Entry& b) {
         return std::tie(a.node, a.number) < std::tie(b.node, b.number);
     };
     const auto found = std::lower_bound(entries_.begin(), entries_.end(), entry, before);
     const bool known = found != entries_.end() && found->node == node && found->number == number;
     if (known && found->material == entry.material && found->plane == plane && found->world == entry.world &&
-        found->solid == entry.solid) {
+        found->solid == entry.solid && found->spacing == entry.spacing) {
         found->used = true;
         return found->surface;
     }
     budget.spend(static_cast<std::int64_t>(
         view.scene->scene->geometries()[static_cast<std::size_t>(geometry_of(view, node))].triangles.size()));
-    entry.surface = cut_surface(view, node, plane, entry.solid);
+    entry.surface = cut_surface(view, node, plane, entry.solid, entry.spacing);
     std::shared_ptr<const CutSurface> surface = entry.surface;
     if (known)
         *found = std::move(entry);

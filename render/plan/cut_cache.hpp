@@ -36,7 +36,8 @@ private:
         scene::ClipPlane plane;
         glm::dmat4 world{1};
         bool solid = false;
-        std::shared_ptr<const CutSurface> surface;
+        double spacing = 0;  ///< of its hatching; 0: none
+        std::shared_ptr<const CutSurface> surface = {};
         bool used = true;
     };
     bool is_solid(const View& view, scene::Index node);

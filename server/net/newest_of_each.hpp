@@ -12,13 +12,17 @@ namespace vrut::server::net {
 /// What waits to be sent about several: of each the newest, in the order in which they began to wait.
 class NewestOfEach {
 public:
-    /// Takes the place of what waits about the same.
+    static constexpr std::size_t kMost = 256;
+
+    /// Takes the place of what waits about the same. Where kMost wait, the one that has waited longest is
+    /// dropped.
     void put(const std::string& about, Text text) {
         const auto before = std::ranges::find(waiting_, about, &Waiting::first);
         if (before != waiting_.end())
             before->second = std::move(text);
         else
             waiting_.emplace_back(about, std::move(text));
+        if (waiting_.size() > kMost) waiting_.pop_front();
     }
     bool empty() const { return waiting_.empty(); }
     std::size_t size() const { return waiting_.size(); }

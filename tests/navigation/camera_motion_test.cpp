@@ -114,11 +114,13 @@ TEST_CASE("whatever the camera does, what is ahead is a camera") {
         camera = navigation::rotated(camera, a, b, i % 3 != 0);
         if (i % 7 == 0) camera.eye = camera.focus + (camera.eye - camera.focus) * std::exp(b / 3);
         if (!scene::is_valid_pose(camera, 1e-12)) camera = turned(a);
+        camera.fov = i % 11 == 0 ? 170 : 1;
         motion.add(i * 9, camera);
         const auto ahead = motion.ahead(i * 9, 300);
         if (!ahead) continue;
         CAPTURE(i);
         CHECK(scene::is_valid_pose(*ahead, 0));
+        CHECK((ahead->fov >= 1 && ahead->fov <= 170));
         CHECK(std::abs(glm::dot(ahead->up, scene::view_direction(*ahead))) < 1e-6);
     }
 }

@@ -27,3 +27,10 @@ TEST_CASE("of what is said about each the newest waits, in the place of the firs
     CHECK(*waiting.take() == "newer");
     CHECK(waiting.empty());
 }
+
+TEST_CASE("at most 256 wait, the newest of them") {
+    NewestOfEach waiting;
+    for (int i = 0; i < 300; ++i) waiting.put(std::to_string(i), text(std::to_string(i).c_str()));
+    CHECK(waiting.size() == NewestOfEach::kMost);
+    CHECK(*waiting.take() == "44");
+}

@@ -137,3 +137,19 @@ TEST_CASE("a cut is kept until its plane or its part moves, and forgotten when a
     cuts.begin_image();
     CHECK(find(nodes) != last);
 }
+
+TEST_CASE("hatching goes on from part to part, also where what is far off is hidden") {
+    plan::View view = view_of(four_parts(), {kAboveFront});
+    view.clip_planes[0].hatched = true;
+    plan::View without = view;
+    std::vector<scene::NodeState> states = view.scene->nodes;
+    states[2].active = false;
+    without.scene = std::make_shared<const scene::PlacedScene>(scene::place(view.scene->scene, states));
+    REQUIRE(without.scene->bounds.radius() != view.scene->bounds.radius());
+    plan::CutCache cuts;
+    plan::DrawBudget budget(false);
+    const auto known = cuts.find(view, 1, 0, budget);
+    CHECK(cuts.find(view, 1, 0, budget) == known);
+    CHECK(cuts.find(without, 1, 0, budget) != known);
+    CHECK(cuts.find(view, 1, 0, budget)->cut.hatching.size() == known->cut.hatching.size());
+}
