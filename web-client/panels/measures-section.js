@@ -1,6 +1,6 @@
 import { button, element } from '../base/element.js';
 import { TOOLS, UNITS, componentWords, measuresOf, nextPick, valueWords } from '../base/measures.js';
-import { unusedName } from '../base/order.js';
+import { freeName, unusedName } from '../base/order.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { byName, choice, facts, numbers, rows, toggle } from './controls.js';
@@ -98,7 +98,8 @@ function measureList({ commands: { patch }, store, offer, report }) {
   let chosen = /** @type {?string} */ (null);
   const remove = async (name) => {
     const before = all()[name];
-    const undo = () => patch({ measures: { [name]: before } });
+    // A new measure may have got its name.
+    const undo = () => patch({ measures: { [freeName(name, Object.keys(all()))]: before } });
     if (await patch({ measures: { [name]: null } })) offer(say('measures.removed', { name }), say('views.undo'), undo);
   };
   const rename = async (name, to) => {

@@ -1,7 +1,7 @@
-import { add, dot, scale, subtract } from '../base/vectors.js';
-import { directionThrough, isSamePose, placeOf, viewDirection } from '../navigation/camera.js';
+import { isSamePose, placeOf } from '../navigation/camera.js';
 import { clippedPath, seenPath } from '../navigation/paths.js';
-import { decodeDepthMap, reciprocalDistanceAt } from '../warp/depth-map.js';
+import { decodeDepthMap } from '../warp/depth-map.js';
+import { surfaceSeen } from '../warp/surface.js';
 import { similarity, withinReach } from './reach.js';
 import { screenOf } from './screen.js';
 
@@ -12,9 +12,6 @@ import { screenOf } from './screen.js';
  * @import { DepthMap } from '../warp/depth-map.js'
  * @import { Similarity } from './reach.js'
  */
-
-/** To the point of a surface that another camera sees. */
-const SURFACE_STEPS = 8;
 
 /**
  * Shows frames on a canvas, none after a newer; `data-frame`, `data-level` and `data-revision` say which. Until the next
@@ -98,25 +95,10 @@ export class Picture {
    * @param {Place} place
    */
   surfaceAt(camera, { x, y }) {
-    const map = this.#map;
-    if (!map || !this.header) return null;
+    if (!this.#map || !this.header) return null;
     const { width, height } = this.#view;
-    const aspect = width / height;
-    const from = drawnFrom(this.header);
-    const view = viewDirection(camera);
-    const ray = directionThrough(camera, aspect, 2 * x / width - 1, 2 * y / height - 1);
-    const pointAt = (depth) => add(camera.eye, scale(ray, depth / dot(ray, view)));
-    // As deep as what the frame shows there, to begin with.
-    let reciprocal = reciprocalDistanceAt(map, x / width, y / height);
-    let point = pointAt(1 / reciprocal);
-    for (let step = 0; step < SURFACE_STEPS && reciprocal > 0; step += 1) {
-      const seen = placeOf(from, aspect, point);
-      reciprocal = reciprocalDistanceAt(map, (1 + seen.x) / 2, (1 + seen.y) / 2);
-      const there = directionThrough(from, aspect, seen.x, seen.y);
-      const surface = add(from.eye, scale(there, 1 / (reciprocal * dot(there, viewDirection(from)))));
-      point = pointAt(dot(subtract(surface, camera.eye), view));
-    }
-    return reciprocal > 0 ? point : null;
+    const place = { x: 2 * x / width - 1, y: 2 * y / height - 1 };
+    return surfaceSeen(this.#map, drawnFrom(this.header), camera, width / height, place);
   }
 
   /** To be called when the canvas has changed its place on the page. */

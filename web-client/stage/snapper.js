@@ -149,8 +149,9 @@ export class Snapper {
     }
     this.#layer.setPointerCapture(pointerId);
     this.#finger = { pointerId, at: placeOf(event), pressed: event };
-    // What was under the finger before is elsewhere.
-    if (pointerType !== 'mouse' && this.#takes === 0) this.#forgetAnswers();
+    // What was under the finger before is elsewhere, and so may be what was under a mouse in another picture.
+    const isOld = pointerType !== 'mouse' || this.#wanted?.frame !== this.#page.frame();
+    if (isOld && this.#takes === 0) this.#forgetAnswers();
     this.#want(placeOf(event));
   }
 

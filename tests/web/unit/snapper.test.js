@@ -30,6 +30,7 @@ class Part extends EventTarget {
 const snapped = (name) => ({ feature: { node: 1, snap: 'vertex', points: [] }, point: [name, 0, 0], line: [] });
 
 let elements;
+let frame;
 let asked;
 let said;
 let told;
@@ -41,11 +42,12 @@ let restore;
 beforeEach(() => {
   restore = replaceGlobals({ document: new EventTarget(), devicePixelRatio: 1 });
   elements = { layer: new Part(), mark: new Part(), loupe: new Part() };
+  frame = 7;
   [asked, said, told, wheels, presses] = [[], [], [], [], []];
   snapper = new Snapper(elements, {
     pick: (question) => new Promise((answer) => asked.push({ question, answer })),
     mapping: () => (x, y) => ({ x: x / 2, y: y / 2 }),
-    frame: () => 7,
+    frame: () => frame,
     paths: (lines) => lines.map((line) => (line.length > 0 ? [line.map(([x]) => ({ x, y: 0 }))] : [])),
     free: () => ({ left: 0, top: 0, right: 1000, bottom: 800 }),
     magnify: () => {},
@@ -155,6 +157,26 @@ test('a mouse sees what it would take without a button, and without the loupe', 
   assert.equal(elements.mark.parts.p.textContent, 'corner');
   pointer('leave', 100, 300, { pointerType: 'mouse' });
   assert.equal(elements.mark.hidden, true);
+});
+
+test('a mouse takes what is under it in the picture that it sees', async () => {
+  const mouse = { pointerType: 'mouse' };
+  const click = async () => {
+    pointer('down', 100, 300, mouse);
+    pointer('up', 100, 300, mouse);
+    await settled();
+  };
+  pointer('move', 100, 300, mouse);
+  await answer({ snapped: snapped(5) });
+  await click();
+  assert.deepEqual([asked.length, told], [0, [5]]);
+  pointer('move', 100, 300, mouse);
+  await answer({ snapped: snapped(5) });
+  frame = 8; // after a turn of the wheel
+  await click();
+  assert.deepEqual(asked.map(({ question }) => question.frame), [8]);
+  await answer({ snapped: snapped(6) });
+  assert.deepEqual(told, [5, 6]);
 });
 
 test('the wheel goes on to the picture, but not under a finger', () => {

@@ -4,6 +4,7 @@ import { describe, test } from 'node:test';
 import { deflateSync, inflateSync } from 'node:zlib';
 import { decodeDepthMap, isStep, layersOf, reciprocalDistanceAt } from '../../../web-client/warp/depth-map.js';
 import { PLACES, PLACE_BITS, Triangles, buildTriangles, packBlocks } from '../../../web-client/warp/grid.js';
+import { surfaceSeen } from '../../../web-client/warp/surface.js';
 import { warpMatrix } from '../../../web-client/warp/warp.js';
 
 // Written by the tests of `warp::encode`, `warp::layers_of` and `warp::warp_matrix` (tests/warp/page_files_test.cpp).
@@ -216,4 +217,14 @@ test('matrices are those of the server, far from the origin, too', () => {
       assert.ok(Math.abs(value - matrix[i]) < 1e-9, `${i}: ${value} instead of ${matrix[i]}`);
     }
   }
+});
+
+test('another camera sees the surface of a frame, as long as its eye has not passed it', () => {
+  const wall = { columns: 1, rows: 1, scale: 1, near: [1], far: [1], mask: [0] };
+  const from = { eye: [0, 0, 10], focus: [0, 0, 0], up: [0, 1, 0], center: [0, 0, 0], fov: 40 };
+  const map = { ...wall, scale: 0.1 / reciprocalDistanceAt(wall, 0.5, 0.5) };
+  const seenFrom = (z) => surfaceSeen(map, from, { ...from, eye: [0, 0, z], focus: [0, 0, z - 1] }, 1, { x: 0.2, y: 0.1 });
+  for (const z of [12, 10, 5, 1]) assert.ok(Math.abs(seenFrom(z)[2]) < 1e-6, `from ${z}`);
+  assert.equal(seenFrom(-1), null);
+  assert.equal(surfaceSeen({ ...map, near: [0], far: [0] }, from, from, 1, { x: 0, y: 0 }), null);
 });
