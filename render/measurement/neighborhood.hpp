@@ -40,7 +40,7 @@ public:
     /// Where between two points, 0 to 1, a line is closest to the ray.
     double closest_to_ray(const glm::dvec3& a, const glm::dvec3& b) const;
 
-    /// True if so many triangles are near that no finger tells them apart: triangles() has none then, and
+    /// True if more triangles are near than a finger can distinguish: triangles() has none then, and
     /// whatever is asked is visible.
     bool is_dense() const { return is_dense_; }
     /// Triangles in two cones' widths, and chains, that may come within 4 radii.

@@ -340,7 +340,7 @@ TEST_CASE("vertices count where a mesh is coarse, and points where it is fine") 
     CHECK(any->feature.points[0] == vertex);
 }
 
-TEST_CASE("where no finger tells triangles apart, planes and points alone are found") {
+TEST_CASE("among more triangles than a finger can distinguish, planes and points alone are found") {
     const auto sheet = [](unsigned columns) {
         return surface(columns, columns, [](double u, double v) { return glm::dvec3(u - 0.5, v - 0.5, 0); });
     };

@@ -60,7 +60,7 @@ function cues({ commands, store, offer, report, present }) {
     remove: (name) => put(name, null, say('views.deleted', { name })),
     rename: async (name, to) => isFree(to) && patch({ cues: { [to]: all()[name], [name]: null } }),
     overwrite: (name) => put(name, asShown(), say('cues.overwritten', { name })),
-    // One that another deletes while its words are typed would be made anew.
+    // One that another deletes while its words are typed would be made again.
     change: (name, members) => Object.hasOwn(all(), name) && commands.change({ cues: { [name]: members } }),
     move: (name, by) => {
       const changed = moved(all(), cueNames(all()), name, by);

@@ -78,7 +78,7 @@ test('what is taken is followed by the next, unless that was ended or another ch
   assert.equal(page.prepares(), 'Arrival');
 });
 
-test('without control nothing is prepared, and why is said', () => {
+test('without control nothing is prepared, and a line has the reason', () => {
   page.set({ steers: false });
   page.presentation.turnPreparing();
   page.set({ role: undefined });
