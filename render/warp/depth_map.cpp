@@ -83,7 +83,7 @@ int predicted(std::span<const std::uint8_t> values, int columns, int column, int
 
 /// The difference of two values modulo 256, small ones of either sign as small ones without.
 char difference(int value, int predicted) {
-    const int wrapped = static_cast<std::int8_t>(value - predicted);
+    const int wrapped = ((value - predicted + 128) & 0xff) - 128;
     return static_cast<char>(wrapped < 0 ? -2 * wrapped - 1 : 2 * wrapped);
 }
 std::uint8_t summed(int predicted, char difference) {
@@ -196,8 +196,8 @@ public:
         sum_columns();
         const std::size_t first = row * static_cast<std::size_t>(map.columns);
         for (std::size_t x = 0; x < rows_[0].size(); x += kAtOnce) {
-            std::array<std::uint8_t, kAtOnce> low, high;
-            std::array<std::uint16_t, kAtOnce> sum;
+            std::array<std::uint8_t, kAtOnce> low{}, high{};
+            std::array<std::uint16_t, kAtOnce> sum{};
             const std::uint8_t *l = low_.data() + x, *h = high_.data() + x;
             const std::uint16_t* s = sum_.data() + x;
             for (std::size_t k = 0; k < kAtOnce; ++k) {
@@ -220,8 +220,8 @@ private:
     /// The smallest, the largest and the sum of each column of parts.
     void sum_columns() {
         for (std::size_t x = 0; x < rows_[0].size(); x += kAtOnce) {
-            std::array<std::uint8_t, kAtOnce> low, high;
-            std::array<std::uint16_t, kAtOnce> sum;
+            std::array<std::uint8_t, kAtOnce> low{}, high{};
+            std::array<std::uint16_t, kAtOnce> sum{};
             const std::uint8_t *a = rows_[0].data() + x, *b = rows_[1].data() + x, *c = rows_[2].data() + x,
                                *d = rows_[3].data() + x;
             for (std::size_t k = 0; k < kAtOnce; ++k) {
@@ -309,7 +309,7 @@ DepthMap DepthSamples::map(double near_distance, std::span<const float> added) c
     map.far.resize(blocks);
     map.mask.assign(blocks, 0xffff);
     // Two rows of parts lie in one that is added, whose rows go from the bottom up.
-    const std::size_t added_columns = static_cast<std::size_t>(kAddedSide * size_.columns);
+    const std::size_t added_columns = kAddedSide * static_cast<std::size_t>(size_.columns);
     BlockRow row(columns, twice);
     for (std::size_t y = 0; y < rows_.size(); y += DepthMap::kBits) {
         for (std::size_t i = 0; i < DepthMap::kBits; ++i)

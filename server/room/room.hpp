@@ -343,6 +343,7 @@ private:
     };
     /// Begins or ends what follows, in line with who is here, and with what moves.
     void use_walls();
+    void restore_clients(const std::vector<protocol::LogHeader::Client>& clients);
     std::optional<protocol::LogHeader::Walls> logged_walls() const;
     /// Or what is wrong with them.
     std::optional<protocol::Error> restore_walls(const protocol::LogHeader::Walls& walls);

@@ -190,13 +190,7 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     state_.camera =
         at != scene::kNone ? state_at_node(camera(), *scene_, at) : state_of(camera(), scene_->bounds);
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
-    for (const protocol::LogHeader::Client& client : header.clients) {
-        if (client.role == protocol::Role::control) steering_.arrive(client.client, client.resume);
-        add_client(client.client, {client.role, client.wanted, client.name, client.resume});
-    }
-    if (state_.control.holder) steering_.take(*state_.control.holder);
-    for (const protocol::ControlState::Asking& asking : state_.control.asking) steering_.ask(asking.client);
-    list_clients();
+    restore_clients(header.clients);
     for (const protocol::LoggedFrame& frame : header.frames)
         frames_.push_back({frame.frame, camera_of(frame.camera), frame.view});
     if (const auto& flight = header.flight) {
@@ -213,6 +207,16 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
         if (auto error = restore_walls(*header.walls)) return tl::unexpected(*std::move(error));
     if (header.revision > 0) document_ = protocol::StateDocument::next({}, state_, header.revision);
     return {};
+}
+
+void Room::restore_clients(const std::vector<protocol::LogHeader::Client>& clients) {
+    for (const protocol::LogHeader::Client& client : clients) {
+        if (client.role == protocol::Role::control) steering_.arrive(client.client, client.resume);
+        add_client(client.client, {client.role, client.wanted, client.name, client.resume});
+    }
+    if (state_.control.holder) steering_.take(*state_.control.holder);
+    for (const protocol::ControlState::Asking& asking : state_.control.asking) steering_.ask(asking.client);
+    list_clients();
 }
 
 }  // namespace vrut::server::room
