@@ -173,7 +173,9 @@ export function field(label, action, add, most = Infinity) {
   const form = element('form', { className: 'entry' }, input, element('button', {}, action));
   form.onsubmit = async (event) => {
     event.preventDefault();
-    if (await add(input.value.trim() || input.placeholder)) input.value = '';
+    const added = input.value;
+    // What is typed before the server answers is of the next one.
+    if (await add(added.trim() || input.placeholder) && input.value === added) input.value = '';
   };
   return { element: form, show: (placeholder) => Object.assign(input, { placeholder }) };
 }

@@ -126,6 +126,21 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.deepEqual(state().views, before);
     });
 
+    test('what is typed before the server has answered stays', async () => {
+      const field = views.getByRole('textbox', { name: 'Name of the view' });
+      await field.fill('Grille');
+      await field.evaluate((input) => {
+        input.form.requestSubmit();
+        input.value = 'Roof';
+      });
+      await button('Grille').waitFor();
+      assert.equal(await field.inputValue(), 'Roof');
+      await button('Save view').tap();
+      await button('Roof').waitFor();
+      await page.waitForFunction((input) => input.value === '', await field.elementHandle());
+      await tablet.say({ type: 'patch', patch: { views: { Grille: null, Roof: null } } });
+    });
+
     test('in all this the browser had nothing to complain of', () => {
       assert.deepEqual(tablet.complaints, []);
     });
