@@ -166,16 +166,25 @@ function places(title, none, go, remove, edit) {
   };
 }
 
-/** Adds what is typed, or else what it shows, of so many bytes; `add` gives nothing where that fails. */
+/** Adds what is typed, or else what it shows, of so many bytes, one after another; `add` gives nothing where that fails. */
 export function field(label, action, add, most = Infinity) {
   const input = element('input', { ariaLabel: label });
   if (most < Infinity) input.oninput = () => limit(input, most);
   const form = element('form', { className: 'entry' }, input, element('button', {}, action));
-  form.onsubmit = async (event) => {
+  let waiting = /** @type {?string} */ (null);
+  let answered = Promise.resolve();
+  form.onsubmit = (event) => {
     event.preventDefault();
-    const added = input.value;
-    // What is typed before the server answers is of the next one.
-    if (await add(added.trim() || input.placeholder) && input.value === added) input.value = '';
+    const { value } = input;
+    if (value === waiting) return; // pressed twice
+    waiting = value;
+    // Only then is it known which names are taken.
+    answered = answered.then(async () => {
+      const isAdded = await add(value.trim() || input.placeholder);
+      // What is typed meanwhile is of the next one.
+      if (isAdded && input.value === value) input.value = '';
+      if (waiting === value) waiting = null;
+    });
   };
   return { element: form, show: (placeholder) => Object.assign(input, { placeholder }) };
 }

@@ -141,6 +141,22 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.deepEqual(state().markers, before);
     });
 
+    test('two that are added in haste are two', async () => {
+      const before = structuredClone(state().markers);
+      await isShown();
+      await field().evaluate((input) => {
+        for (const text of ['Scratch', 'Stain']) {
+          input.value = text;
+          input.form.requestSubmit();
+        }
+      });
+      const added = () => Object.entries(state().markers).filter(([one]) => !before[one]);
+      await until('both', () => added().some(([, { text }]) => text === 'Stain'));
+      assert.deepEqual(added().map(([, { text }]) => text), ['Scratch', 'Stain']);
+      await presenter.say({ type: 'patch', patch: { markers: Object.fromEntries(added().map(([one]) => [one, null])) } });
+      await until('those before', () => added().length === 0);
+    });
+
     test('the report is saved, with pictures; and the table', async () => {
       const saved = async (label) => {
         const coming = page.waitForEvent('download');

@@ -126,19 +126,26 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.deepEqual(state().views, before);
     });
 
-    test('what is typed before the server has answered stays', async () => {
+    test('what is typed before the server has answered stays, and is added after it', async () => {
       const field = views.getByRole('textbox', { name: 'Name of the view' });
-      await field.fill('Grille');
+      const asked = (from) => tablet.wire.sent.slice(from).flatMap(({ patch }) => Object.keys(patch?.views ?? {}));
+      const sent = tablet.wire.sent.length;
       await field.evaluate((input) => {
-        input.form.requestSubmit();
-        input.value = 'Roof';
+        for (const typed of ['Grille', 'Grille', 'Roof']) {
+          input.value = typed;
+          input.form.requestSubmit();
+        }
+        input.value = 'Trunk';
       });
-      await button('Grille').waitFor();
-      assert.equal(await field.inputValue(), 'Roof');
-      await button('Save view').tap();
       await button('Roof').waitFor();
-      await page.waitForFunction((input) => input.value === '', await field.elementHandle());
+      await button('Grille').waitFor();
+      assert.deepEqual(asked(sent), ['Grille', 'Roof']);
       await tablet.say({ type: 'patch', patch: { views: { Grille: null, Roof: null } } });
+      assert.equal(await field.inputValue(), 'Trunk');
+      await button('Save view').tap();
+      await page.waitForFunction((input) => input.value === '', await field.elementHandle());
+      assert.ok(state().views.Trunk);
+      await tablet.say({ type: 'patch', patch: { views: { Trunk: null } } });
     });
 
     test('in all this the browser had nothing to complain of', () => {
