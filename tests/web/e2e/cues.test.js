@@ -269,7 +269,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await button('Prepare', strip()).tap();
       await line('Only you see “Close” until you take it.').waitFor();
       const { holder } = state().control;
-      const shown = pose(watchers[0].wire.state.camera);
+      const shown = pose(state().camera);
       await page.close();
       for (const { wire } of [...watchers, colleague]) {
         await wire.until('nobody there', () => wire.state.control.absent);

@@ -46,6 +46,7 @@ describe('pointing', { skip: browserIsMissing }, () => {
   const none = (tablet) => tablet.page.waitForFunction(() => !document.querySelector('#pointed p'));
 
   test('a watcher points by a finger, all see the dot and the name, and nothing else happens', async () => {
+    await presenter.wire.until('the watcher', () => Object.keys(presenter.wire.state.clients).length === 2);
     const { revision } = presenter.wire;
     const before = structuredClone(presenter.wire.state.camera);
     await point(watcher, '#watching').tap();
