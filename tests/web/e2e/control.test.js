@@ -11,7 +11,6 @@ const SIZES = {
   phone: PHONE,
   desktop: { width: 1440, height: 900, pixelRatio: 1 },
 };
-const HOLD_MS = 1000;
 
 describe('control', { skip: browserIsMissing }, () => {
   let browser;
@@ -50,8 +49,9 @@ describe('control', { skip: browserIsMissing }, () => {
       const hold = async (tablet) => {
         const { x, y, width, height } = await tablet.page.locator('#presence').boundingBox();
         const at = [{ x: x + width / 2, y: y + height / 2, id: 0 }];
+        const sent = tablet.wire.sent.length;
         await tablet.finger('touchStart', at);
-        await tablet.page.waitForTimeout(HOLD_MS);
+        await tablet.wire.until('the press was long', () => tablet.wire.sent.slice(sent).some(({ action }) => action === 'take'));
         await tablet.finger('touchEnd', []);
       };
 
