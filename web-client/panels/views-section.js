@@ -166,7 +166,10 @@ function places(title, none, go, remove, edit) {
   };
 }
 
-/** Adds what is typed, or else what it shows, of so many bytes, one after another; `add` gives nothing where that fails. */
+/**
+ * Adds what is typed, or else what it shows, of so many bytes. What is entered before the server has answered waits;
+ * `add` gives nothing where it fails.
+ */
 export function field(label, action, add, most = Infinity) {
   const input = element('input', { ariaLabel: label });
   if (most < Infinity) input.oninput = () => limit(input, most);
@@ -178,7 +181,7 @@ export function field(label, action, add, most = Infinity) {
     const { value } = input;
     if (value === waiting) return; // pressed twice
     waiting = value;
-    // Only then is it known which names are taken.
+    // Which names are taken is known when the one before has its own.
     answered = answered.then(async () => {
       const isAdded = await add(value.trim() || input.placeholder);
       // What is typed meanwhile is of the next one.
