@@ -37,3 +37,15 @@ test('each link between documents leads somewhere', () => {
 test('README is read in three minutes', () => {
   assert.ok(readFileSync(path.join(ROOT, 'README.md'), 'utf8').split('\n').length <= MOST_LINES + 1);
 });
+
+test('.ci/run begins with the commands that README starts with', () => {
+  const start = /^## Start$.*?^```\n(.*?)^```$/ms.exec(readFileSync(path.join(ROOT, 'README.md'), 'utf8'))[1];
+  const commands = start.trim().split('\n').map((line) => line.replace(/ +#.*/, ''));
+  const script = readFileSync(path.join(ROOT, '.ci/run'), 'utf8');
+  const named = (name) => new RegExp(`^${name}="(.*)"$`, 'm').exec(script)[1];
+  assert.deepEqual(commands, [named('quickstart'), named('tests')]);
+  // Each in a system of its own: the first until it shows a picture, the second to its end and before all others.
+  const systems = [...script.matchAll(/^ *within (\w+) "(.*)"/gm)].map(([, system, line]) => [system, line]);
+  assert.deepEqual(systems, [['first', '$quickstart'], ['second', '$tests && $rest']]);
+  assert.match(script, /^first_picture$/m);
+});
