@@ -14,19 +14,20 @@ Checks the source's format, builds the program, and runs the tests of its parts,
 of the protocol and of the command line, and one walk through the page in a browser. Debian packages and node modules
 that are missing are installed first.
 
-  --ci      also the rest of the tests, clang-tidy without its analyzer on the program, and the address and undefined
-            behaviour sanitizers on the tests that need no renderer: within an hour on two cores
-  --all     also clang-tidy's analyzer, and clang-tidy on the tests, the same sanitizers with the real renderer, the
+  --ci      what the tests without an option leave out and fits into forty minutes on two cores: the rest of the tests,
+            clang-tidy without its analyzer on the program, and the address and undefined behaviour sanitizers on the
+            tests that need no renderer
+  --all     both, and clang-tidy's analyzer, and clang-tidy on the tests, the same sanitizers with the real renderer, the
             thread sanitizer, the packages in a bare Debian, the soak tests, the benchmarks and the fuzzers: hours
   --help    this text
 TEXT
 }
 
-ci=false all=false
+default=true ci=false all=false
 while [ $# -gt 0 ]; do
     case $1 in
-    --ci) ci=true ;;
-    --all) ci=true all=true ;;
+    --ci) default=false ci=true ;;
+    --all) default=true ci=true all=true ;;
     -h | --help)
         usage
         exit 0
@@ -48,7 +49,7 @@ if command -v ccache >/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$ROOT CCACHE_NOHASHDIR=1
     configure=(-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
 fi
-default_labels='^(unit|net|replay|page|contract|cli|walk)$'
+default_labels='unit|net|replay|page|contract|cli|walk'
 done_steps=0
 
 # Runs a function or command as a named step; when it fails, says so with what to do, and stops.
@@ -95,16 +96,28 @@ format() {
     sources cpp hpp | xargs -r clang-format-14 --dry-run -Werror
 }
 
-build() { # PRESET CMAKE-BUILD-ARGUMENTS...
+configured() { # PRESET
     cmake --preset "$1" "${configure[@]}" >"build/$1.configure.log" 2>&1 || {
         cat "build/$1.configure.log"
         return 1
     }
+}
+
+build() { # PRESET CMAKE-BUILD-ARGUMENTS...
+    configured "$1"
     NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build --preset "$1" --parallel "$jobs" "${@:2}"
 }
 
 tests() { # PRESET CTEST-ARGUMENTS...
-    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" </dev/null
+    local status=0
+    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" </dev/null || status=$?
+    # Of whole tests that are skipped, and of cases of those that are not.
+    awk -v preset="$1" '/^[0-9]+\/[0-9]+ Testing: / { name = $3 }
+        /(^|MESSAGE: )skipped/ { print "  " preset ", " name ": " $0 }
+        /^Skip regular expression found in output. Regex=\[test cases: \+0 \]/ {
+            print "  " preset ", " name ": skipped: the variable " substr(name, index(name, "VRUT_TEST_")) " names no folder"
+        }' "build/$1/Testing/Temporary/LastTest.log" >>build/skipped.txt
+    return "$status"
 }
 
 # What the build compiles, without precompiled headers, since clang-tidy reads no other compiler's; and of this only what
@@ -173,22 +186,26 @@ if $ci; then space=3000; fi
 if $all; then space=5500; fi
 if [ ! -d build/release ]; then require_space build "$space" "Building the program and its tests"; fi
 
+rm -f build/skipped.txt
 step "Debian packages" "" packages
 step "node modules" "npm's message is above: see that there is a network, and start again." node_modules
 step "format" "Run clang-format-14 -i on the files named above." format
+step "configuration" "CMake's message is above." configured release
+step "programs that tests start" "Do what is said above." node tests/programs.mjs build/release
+if $default; then
+    step "build of the tests" "$compile_remedy" build release --target default_tests
+    step "tests" "Again alone: ctest --preset release -R NAME." tests release -L "^($default_labels)\$"
+fi
 if $ci; then
     step "build release" "$compile_remedy" build release
     begin asan build asan --target tests_without_gpu
     asan=$background
     # The files of a library that are compiled as one are, to it, suspicious.
     if $all; then begin tidy tidy analyzer; else begin tidy tidy one '--checks=-clang-analyzer-*,-bugprone-suspicious-include'; fi
-    step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE '^(soak|fuzz|bench|bare)$'
+    step "rest of the tests" "Again alone: ctest --preset release -R NAME." tests release -LE "^($default_labels|soak|fuzz|bench|bare)\$"
     step "build asan" "$compile_remedy" end asan "$asan"
     step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
     step "clang-tidy" "Mend what it names above." end tidy "$background"
-else
-    step "build release" "$compile_remedy" build release --target default_tests
-    step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -L "$default_labels"
 fi
 if $all; then
     step "build asan with the renderer" "$compile_remedy" build asan --target test_renderer test_gl_faults test_soak
@@ -200,5 +217,9 @@ if $all; then
     step "benchmarks" "Again alone: ctest --preset release -R NAME." tests release -L '^bench$'
     step "build fuzz" "$compile_remedy" build fuzz
     step "fuzzers" "Again alone: ctest --preset fuzz -R NAME." tests fuzz -L '^fuzz$'
+fi
+if [ -s build/skipped.txt ]; then
+    say "Skipped, and why:"
+    cat build/skipped.txt >&2
 fi
 say "All $done_steps steps passed in $SECONDS s."

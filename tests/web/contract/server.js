@@ -13,8 +13,9 @@ const STOPPED_WITHIN_MS = 10_000;
 
 export const PROGRAM = process.env.VRUT_PREVIEW;
 export const SCENES = fileURLToPath(new URL('scene', import.meta.url));
-/** The same for clients that come by an edge. */
+/** The same for clients that come by an edge: the environment names the module that starts those. */
 export const BY_EDGE = Boolean(process.env.VRUT_BY_EDGE);
+const byEdge = BY_EDGE && (await import(process.env.VRUT_BY_EDGE));
 export const sceneFile = (name) => path.join(SCENES, name);
 
 /** A folder that goes when the process does. */
@@ -23,32 +24,6 @@ export function temporaryFolder() {
   process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
   return folder;
 }
-
-/** @returns {Promise<string>} the address of a NATS server of this process's own */
-async function startNats() {
-  const folder = temporaryFolder();
-  const child = spawn('/usr/sbin/nats-server', ['-a', '127.0.0.1', '-p', '-1', '-js', '-sd', folder, '--ports_file_dir', folder], { stdio: 'ignore' });
-  child.unref();  // it goes with this process
-  process.on('exit', () => child.kill('SIGKILL'));
-  const file = path.join(folder, `nats-server_${child.pid}.ports`);
-  for (const end = Date.now() + READY_WITHIN_MS; Date.now() < end; await delay(20)) if (existsSync(file)) break;
-  return JSON.parse(readFileSync(file, 'utf8')).nats[0];
-}
-
-/** Options of `serve`, and those of them that `edge` has, too. */
-function divided(options) {
-  const own = [], network = [];
-  for (let i = 0; i < options.length; ++i) {
-    const list = ['--max-clients', '--token-file', '--allow-origin'].includes(options[i]) ? network : own;
-    list.push(options[i]);
-    if (options[i].startsWith('--') && options[i + 1] !== undefined && !options[i + 1].startsWith('--')) list.push(options[++i]);
-  }
-  return { own, network };
-}
-
-/** @type {Promise<string> | undefined} */
-let nats;
-let rooms = 0;
 
 export class Server {
   #children = [];
@@ -62,12 +37,9 @@ export class Server {
     const server = new Server();
     const listen = ['--listen', '127.0.0.1:0'];
     if (BY_EDGE) {
-      const url = await (nats ??= startNats());
-      const room = `room-${++rooms}`;
-      // Who may come in is the room's to say; which page may connect, and how many clients may be here, the edge's.
-      const { own, network } = divided(options);
-      await server.#start(['serve', scene, ...listen, '--nats', url, '--room', room, ...own, ...network], env);
-      server.url = `${await server.#start(['edge', '--nats', url, ...listen, ...network], env)}rooms/${room}/`;
+      const { serve, edge, room } = await byEdge.commandLines(options);
+      await server.#start(['serve', scene, ...listen, ...serve], env);
+      server.url = `${await server.#start(['edge', ...listen, ...edge], env)}rooms/${room}/`;
     } else {
       server.url = await server.#start(['serve', scene, ...listen, ...options], env);
     }

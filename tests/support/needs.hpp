@@ -1,0 +1,17 @@
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <cstdio>
+
+/// Of a test case that not every machine can run: `* Needs{is_there, "Landlock of Linux 5.13"}`. Without it
+/// the case is skipped, which a line says.
+struct Needs {
+    bool is_there;
+    const char* what;
+
+    void fill(doctest::detail::TestCase& test) const {
+        test.m_skip = !is_there;
+        if (!is_there) std::printf("skipped - %s: there is no %s\n", test.m_name, what);
+    }
+};
