@@ -44,7 +44,7 @@ int limit_of(GLenum name) {
     return limit;
 }
 
-using Kind = ResourceKey::Kind;
+using ResourceKind = ResourceKey::Kind;
 
 std::array<const scene::Image*, 6> images_of(const scene::Scene& scene,
                                              const std::array<scene::Index, 6>& textures) {
@@ -58,7 +58,7 @@ bool is_metallic_roughness(const scene::Material& material) {
     return material.metallic_roughness.has_value();
 }
 
-ResourceKey key_of(Kind kind, scene::Index index, int level = 0) { return {kind, {index, level}}; }
+ResourceKey key_of(ResourceKind kind, scene::Index index, int level = 0) { return {kind, {index, level}}; }
 
 }  // namespace
 
@@ -75,26 +75,26 @@ GpuScene::GpuScene(std::shared_ptr<const scene::Scene> scene)
 bool GpuScene::is_resident(const ResourceKey& key) const {
     const auto index = static_cast<std::size_t>(key.indices[0]);
     switch (key.kind) {
-        case Kind::geometry:
+        case ResourceKind::geometry:
             return bool(geometries_[index].buffers);
-        case Kind::level:
+        case ResourceKind::level:
             return levels_.contains({key.indices[0], key.indices[1]});
-        case Kind::edges:
+        case ResourceKind::edges:
             return edges_[index].has_value();
-        case Kind::texture:
+        case ResourceKind::texture:
             return bool(textures_[index]);
-        case Kind::cube_map:
+        case ResourceKind::cube_map:
             return cube_maps_.contains(key.indices);
-        case Kind::environment_light:
+        case ResourceKind::environment_light:
             return environment_lights_.contains(key.indices);
     }
     return false;
 }
 
 bool GpuScene::can_draw(scene::Index geometry, const mesh::DetailLevel& level) const {
-    if (is_resident(key_of(Kind::level, geometry, level.number))) return true;
+    if (is_resident(key_of(ResourceKind::level, geometry, level.number))) return true;
     const auto any = levels_.lower_bound({geometry, 0});
-    return !is_resident(key_of(Kind::geometry, geometry)) &&
+    return !is_resident(key_of(ResourceKind::geometry, geometry)) &&
            (any == levels_.end() || any->first.first != geometry);
 }
 
@@ -109,7 +109,7 @@ bool GpuScene::request(const ResourceKey& key, Need need, const Make& make) {
 }
 
 bool GpuScene::request_geometry(scene::Index index, Need need) {
-    const ResourceKey key = key_of(Kind::geometry, index);
+    const ResourceKey key = key_of(ResourceKind::geometry, index);
     return is_resident(key) || request(key, need, [scene = scene_, index, &read = read_geometry(index)] {
                return geometry_data(read, scene->needs_double_single(index));
            });
@@ -117,7 +117,7 @@ bool GpuScene::request_geometry(scene::Index index, Need need) {
 
 bool GpuScene::request(scene::Index geometry, const mesh::DetailLevel& level,
                        const std::shared_ptr<const mesh::DetailLevels>& levels, Need need) {
-    const ResourceKey key = key_of(Kind::level, geometry, level.number);
+    const ResourceKey key = key_of(ResourceKind::level, geometry, level.number);
     return is_resident(key) ||
            request(key, need, [scene = scene_, geometry, levels, &read = read_geometry(geometry), &level] {
                return level_data(read, level, scene->needs_double_single(geometry));
@@ -131,13 +131,13 @@ bool GpuScene::request(const plan::DrawItem& item, const std::shared_ptr<const m
                                        item.occlusion_roughness_metallic_texture, item.normal_texture})
         has_textures = (texture == scene::kNone || request_texture(texture)) && has_textures;
     if (item.level) return request(item.geometry, *item.level, levels, Need::now) && has_textures;
-    const bool has_level = !item.order && is_resident(key_of(Kind::level, item.geometry, 0));
+    const bool has_level = !item.order && is_resident(key_of(ResourceKind::level, item.geometry, 0));
     return (has_level || request_geometry(item.geometry, Need::now)) && has_textures;
 }
 
 bool GpuScene::request_edges(const plan::DrawItem& item, Need need) {
     const scene::Index index = item.geometry;
-    const ResourceKey key = key_of(Kind::edges, index);
+    const ResourceKey key = key_of(ResourceKind::edges, index);
     const bool has_geometry = request_geometry(index, need);
     const bool has_edges =
         is_resident(key) ||
@@ -146,8 +146,8 @@ bool GpuScene::request_edges(const plan::DrawItem& item, Need need) {
 }
 
 bool GpuScene::request_texture(scene::Index index) {
-    return is_resident(key_of(Kind::texture, index)) ||
-           request(key_of(Kind::texture, index), Need::now, make_texture(index));
+    return is_resident(key_of(ResourceKind::texture, index)) ||
+           request(key_of(ResourceKind::texture, index), Need::now, make_texture(index));
 }
 
 std::function<PreparedData()> GpuScene::make_texture(scene::Index index) const {
@@ -165,7 +165,7 @@ std::function<PreparedData()> GpuScene::make_texture(scene::Index index) const {
 }
 
 bool GpuScene::request_cube_map(const std::array<scene::Index, 6>& textures) {
-    const ResourceKey key{Kind::cube_map, textures};
+    const ResourceKey key{ResourceKind::cube_map, textures};
     return is_resident(key) || request(key, Need::now, make_cube_map(textures));
 }
 
@@ -178,7 +178,7 @@ std::function<PreparedData()> GpuScene::make_cube_map(const std::array<scene::In
 }
 
 bool GpuScene::request_environment_light(const std::array<scene::Index, 6>& textures) {
-    const ResourceKey key{Kind::environment_light, textures};
+    const ResourceKey key{ResourceKind::environment_light, textures};
     return is_resident(key) || request(key, Need::now, make_environment_light(textures));
 }
 
@@ -244,9 +244,9 @@ void GpuScene::create_edges(Arrival& arrival) {
 
 void GpuScene::create_storage(Arrival& arrival) {
     const ResourceKey& key = arrival.result.key;
-    if (key.kind == Kind::geometry || key.kind == Kind::level) {
+    if (key.kind == ResourceKind::geometry || key.kind == ResourceKind::level) {
         create_geometry(arrival);
-    } else if (key.kind == Kind::edges) {
+    } else if (key.kind == ResourceKind::edges) {
         create_edges(arrival);
     } else {
         const TextureData& data = arrival.result.data.texture;
@@ -261,27 +261,28 @@ void GpuScene::finish(Arrival& arrival) {
     const scene::Index index = key.indices[0];
     const auto at = static_cast<std::size_t>(index);
     switch (key.kind) {
-        case Kind::geometry:
+        case ResourceKind::geometry:
             geometries_[at] = std::move(arrival.geometry);
             break;
-        case Kind::level:
+        case ResourceKind::level:
             levels_[{index, key.indices[1]}] = std::move(arrival.geometry);
             // The same triangles in another order: edges alone need the file's.
-            if (key.indices[1] == 0 && !edges_[at] && !requested_.contains(key_of(Kind::edges, index)))
+            if (key.indices[1] == 0 && !edges_[at] &&
+                !requested_.contains(key_of(ResourceKind::edges, index)))
                 geometries_[at] = {};
             break;
-        case Kind::edges:
+        case ResourceKind::edges:
             if (arrival.edges.indices)
                 arrival.edges.vertex_array = vertex_array_of(geometry(index), arrival.edges.indices);
             edges_[at] = std::move(arrival.edges);
             break;
-        case Kind::texture:
+        case ResourceKind::texture:
             textures_[at] = std::move(arrival.texture);
             break;
-        case Kind::cube_map:
+        case ResourceKind::cube_map:
             cube_maps_[key.indices] = std::move(arrival.texture);
             break;
-        case Kind::environment_light:
+        case ResourceKind::environment_light:
             environment_lights_[key.indices] = {std::move(arrival.texture), arrival.result.data.harmonics};
             break;
     }
@@ -332,7 +333,7 @@ void GpuScene::upload_at_once(const ResourceKey& key, const std::function<Prepar
 // --- lookups
 
 const GpuGeometry& GpuScene::geometry(scene::Index index) {
-    const ResourceKey key = key_of(Kind::geometry, index);
+    const ResourceKey key = key_of(ResourceKind::geometry, index);
     if (!is_resident(key))
         upload_at_once(
             key, [&] { return geometry_data(read_geometry(index), scene_->needs_double_single(index)); });
@@ -341,13 +342,13 @@ const GpuGeometry& GpuScene::geometry(scene::Index index) {
 
 const GpuGeometry& GpuScene::geometry(const plan::DrawItem& item) {
     if (item.cut) return cut(item).faces;
-    const ResourceKey key = key_of(Kind::level, item.geometry, item.level ? item.level->number : 0);
+    const ResourceKey key = key_of(ResourceKind::level, item.geometry, item.level ? item.level->number : 0);
     if (item.level && !is_resident(key))
         upload_at_once(key, [&] {
             return level_data(read_geometry(item.geometry), *item.level,
                               scene_->needs_double_single(item.geometry));
         });
-    const bool as_in_file = !item.level && (is_resident(key_of(Kind::geometry, item.geometry)) ||
+    const bool as_in_file = !item.level && (is_resident(key_of(ResourceKind::geometry, item.geometry)) ||
                                             item.order || !is_resident(key));
     return as_in_file ? geometry(item.geometry) : levels_.at({item.geometry, key.indices[1]});
 }
@@ -358,19 +359,19 @@ const GpuEdges* GpuScene::edges(scene::Index index) const {
 }
 
 const GlTexture& GpuScene::texture(scene::Index index) {
-    const ResourceKey key = key_of(Kind::texture, index);
+    const ResourceKey key = key_of(ResourceKind::texture, index);
     if (!is_resident(key)) upload_at_once(key, make_texture(index));
     return textures_[static_cast<std::size_t>(index)];
 }
 
 const GlTexture& GpuScene::cube_map(const std::array<scene::Index, 6>& textures) {
-    const ResourceKey key{Kind::cube_map, textures};
+    const ResourceKey key{ResourceKind::cube_map, textures};
     if (!is_resident(key)) upload_at_once(key, make_cube_map(textures));
     return cube_maps_.at(textures);
 }
 
 const GpuEnvironmentLight& GpuScene::environment_light(const std::array<scene::Index, 6>& textures) {
-    const ResourceKey key{Kind::environment_light, textures};
+    const ResourceKey key{ResourceKind::environment_light, textures};
     if (!is_resident(key)) upload_at_once(key, make_environment_light(textures));
     return environment_lights_.at(textures);
 }

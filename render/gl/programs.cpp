@@ -12,7 +12,7 @@ namespace vrut::gl {
 
 namespace {
 
-using Kind = SurfaceVariant::Kind;
+using SurfaceKind = SurfaceVariant::Kind;
 using Light = SurfaceVariant::Light;
 
 struct StageFiles {
@@ -56,19 +56,21 @@ static_assert(kClipCapacities.back() == 13);
 /// Metal and roughness need an environment, and are lit at pixels, as what a normal map bends.
 bool is_reachable(const SurfaceVariant& variant) {
     const bool varied = variant.metallic_roughness || variant.mapped;
-    if (variant.kind == Kind::edges &&
+    if (variant.kind == SurfaceKind::edges &&
         (variant.textured || variant.colored || variant.emissive || varied || variant.environment))
         return false;
-    if (variant.kind == Kind::mirror && variant.environment && !variant.metallic_roughness) return false;
-    if (variant.cap && (variant.kind != Kind::faces || variant.textured || variant.environment ||
+    if (variant.kind == SurfaceKind::mirror && variant.environment && !variant.metallic_roughness)
+        return false;
+    if (variant.cap && (variant.kind != SurfaceKind::faces || variant.textured || variant.environment ||
                         variant.colored || variant.emissive || varied || variant.instanced))
         return false;
     if (variant.anisotropic && !(variant.textured || variant.mapped)) return false;
     if (variant.metallic_roughness && !variant.environment) return false;
     if (variant.coated && !variant.metallic_roughness) return false;
     if (varied && variant.lit_at != plan::Methods::Lighting::pixel) return false;
-    if (variant.instanced && (variant.kind != Kind::faces || variant.double_single || variant.colored ||
-                              variant.emissive || variant.mapped || variant.clip_planes > 1))
+    if (variant.instanced &&
+        (variant.kind != SurfaceKind::faces || variant.double_single || variant.colored || variant.emissive ||
+         variant.mapped || variant.clip_planes > 1))
         return false;
     return true;
 }
@@ -127,7 +129,7 @@ SceneFeatures features_of(const scene::Scene& scene) {
 }
 
 bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
-    const bool is_glass = variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass;
+    const bool is_glass = variant.kind == SurfaceKind::glass || variant.kind == SurfaceKind::per_pixel_glass;
     const bool textured = is_glass ? features.glass_textured : features.opaque_textured;
     const bool reflective = is_glass ? features.reflective_glass : features.reflective;
     if (!features.lights[static_cast<std::size_t>(variant.light)]) return false;
@@ -139,7 +141,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     if (variant.mapped && !(features.mapped && features.texcoords)) return false;
     if (variant.instanced && !features.small_geometries) return false;
     if (is_glass && !features.glass) return false;
-    if (variant.kind == Kind::mirror && !features.mirrors()) return false;
+    if (variant.kind == SurfaceKind::mirror && !features.mirrors()) return false;
     if (variant.textured && !(textured && features.texcoords)) return false;
     if (variant.environment && !((reflective || variant.metallic_roughness) && features.environment_map))
         return false;
@@ -147,7 +149,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     // A mirror clips what it shows, and the headlight is not at the eye of its view.
     if (variant.clip_planes == 0) return true;
     return variant.clip_planes == 1 && features.mirrors() && variant.light != Light::headlight &&
-           variant.kind != Kind::edges && variant.kind != Kind::mirror;
+           variant.kind != SurfaceKind::edges && variant.kind != SurfaceKind::mirror;
 }
 
 GlProgram compile(const ProgramSource& source) { return make_program(source.vertex, source.fragment); }
@@ -183,7 +185,8 @@ std::vector<PlainVariant> reachable_plain_variants() {
 std::vector<SurfaceVariant> reachable_surface_variants() {
     using Lighting = plan::Methods::Lighting;
     std::vector<SurfaceVariant> variants;
-    for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
+    for (const SurfaceKind kind : {SurfaceKind::faces, SurfaceKind::edges, SurfaceKind::glass,
+                                   SurfaceKind::per_pixel_glass, SurfaceKind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
                 for (const int clip_planes : kClipCapacities)
@@ -244,7 +247,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     };
     define(true, kLights[static_cast<std::size_t>(variant.light)]);
     define(variant.instanced, "INSTANCED");
-    define(variant.kind == Kind::edges, "EDGES");
+    define(variant.kind == SurfaceKind::edges, "EDGES");
     define(variant.textured, "TEXTURED");
     define(variant.colored, "COLORED");
     define(variant.emissive, "EMISSIVE");
@@ -252,9 +255,9 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.mapped, "MAPPED");
     define(variant.coated, "COATED");
     define(variant.environment, "ENVIRONMENT");
-    define(variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass, "GLASS");
-    define(variant.kind == Kind::per_pixel_glass, "LAYERED");
-    define(variant.kind == Kind::mirror, "MIRROR");
+    define(variant.kind == SurfaceKind::glass || variant.kind == SurfaceKind::per_pixel_glass, "GLASS");
+    define(variant.kind == SurfaceKind::per_pixel_glass, "LAYERED");
+    define(variant.kind == SurfaceKind::mirror, "MIRROR");
     define(variant.clip_planes > 0, clip_define(variant.clip_planes));
     define(variant.cap, "CAP");
     define(variant.double_single, "DOUBLE_SINGLE");

@@ -23,6 +23,7 @@
 #include "engine/room_engine.hpp"
 #include "engine/scene_lookup.hpp"
 #include "engine/scheduler.hpp"
+#include "engine/shared_hooks.hpp"
 #include "mesh/detail_levels.hpp"
 #include "navigation/camera_motion.hpp"
 #include "observe/live_stats.hpp"
@@ -46,15 +47,7 @@ struct EngineOptions {
     std::filesystem::path record_folder;
     ChangeKeeper::Store keep_changes = {};  ///< empty: they are lost with the scene
     room::ShareAddress share = {};
-    /// Of a room that servers share. It follows another server until TakeOver.
-    struct Shared {
-        std::function<void(const protocol::LogLine& line)> on_line;  ///< on the render thread
-        /// On the render thread; the lines before it led here.
-        std::function<void(const room::Room::Checkpoint& checkpoint)> on_checkpoint;
-        std::function<void(const std::string& why)>
-            on_failure;  ///< the room cannot be followed: the server has to start again
-    };
-    std::optional<Shared> shared = {};
+    std::optional<SharedHooks> shared = {};  ///< of a room that servers share
 };
 
 /// The render thread: owns the scene, the state and the camera, applies what clients say in the order in
@@ -228,7 +221,7 @@ private:
     PictureLimits limits_;
     std::string description_;
     base::Clock::time_point start_ = base::Clock::now();
-    const std::optional<EngineOptions::Shared> shared_;
+    const std::optional<SharedHooks> shared_;
     std::atomic<bool> follows_{false};
     std::optional<std::uint64_t> lease_;              ///< of a shared room
     std::uint64_t sequence_ = 0;                      ///< of the message in hand; 0: none

@@ -12,7 +12,7 @@
 #include "engine/link.hpp"
 #include "engine/picture.hpp"
 #include "message_table.hpp"
-#include "room/room.hpp"
+#include "room/answers.hpp"
 #include "scenes/loader.hpp"
 
 namespace vrut::server::engine {
@@ -87,7 +87,7 @@ struct PictureAsked {
 
 /// Another server draws the room: what it did, which is done here likewise, until TakeOver.
 struct FollowFrom {
-    std::shared_ptr<const room::Room::Checkpoint> checkpoint;
+    std::shared_ptr<const room::Checkpoint> checkpoint;
     std::shared_ptr<const scenes::LoadedScene> scene;
 };
 struct Follow {

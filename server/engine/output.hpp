@@ -10,7 +10,7 @@
 
 #include "engine/frame_quality.hpp"
 #include "engine/picture.hpp"
-#include "room/room.hpp"
+#include "room/answers.hpp"
 #include "state.hpp"
 
 namespace vrut::server::engine {

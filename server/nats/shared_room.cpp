@@ -27,7 +27,7 @@ constexpr std::size_t kMostGated = 2'000;                    // outputs and fram
 /// An entry that says: what follows goes on from the state that is stored next.
 constexpr std::string_view kRestart = "restart\n";
 
-std::string text_of(const room::Room::Checkpoint& checkpoint) {
+std::string text_of(const room::Checkpoint& checkpoint) {
     return protocol::encode(checkpoint.header) + "\n" +
            protocol::encode(protocol::LogLine{protocol::LogTime{0}, {}, checkpoint.revised});
 }
@@ -62,8 +62,8 @@ void SharedRoom::end() {
     owner_.end();
 }
 
-engine::EngineOptions::Shared SharedRoom::hooks() {
-    engine::EngineOptions::Shared hooks;
+engine::SharedHooks SharedRoom::hooks() {
+    engine::SharedHooks hooks;
     hooks.on_line = [this](const protocol::LogLine& line) {
         {
             const std::lock_guard lock(mutex_);
@@ -72,9 +72,9 @@ engine::EngineOptions::Shared SharedRoom::hooks() {
         }
         written_.notify_one();
     };
-    hooks.on_checkpoint = [this](const room::Room::Checkpoint& checkpoint) {
+    hooks.on_checkpoint = [this](const room::Checkpoint& checkpoint) {
         const std::lock_guard lock(mutex_);
-        room::Room::Checkpoint with_sequences = checkpoint;
+        room::Checkpoint with_sequences = checkpoint;
         for (protocol::LogHeader::Client& client : with_sequences.header.clients)
             client.sequence = clients_[client.client].sequence;
         checkpoint_ = Checkpoint{text_of(with_sequences), written_lines_};
@@ -179,7 +179,7 @@ bool SharedRoom::load_state() {
     auto scene = options_.find_scene(header->scene, header->scene_sha256, header->up_axis);
     if (!scene)
         throw std::runtime_error("the room '" + options_.room + "' shows another scene: " + scene.error());
-    auto checkpoint = std::make_shared<room::Room::Checkpoint>();
+    auto checkpoint = std::make_shared<room::Checkpoint>();
     clients_.clear();
     for (const protocol::LogHeader::Client& client : header->clients)
         clients_[client.client] = {client.role == protocol::Role::control, client.sequence};

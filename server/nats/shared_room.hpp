@@ -39,7 +39,7 @@ public:
     SharedRoom& operator=(const SharedRoom&) = delete;
 
     /// For the engine of the room.
-    engine::EngineOptions::Shared hooks();
+    engine::SharedHooks hooks();
     /// The engine's output goes through these to `to_clients`, those of this server's own door, and to
     /// edges.
     engine::EngineCallbacks relay(engine::EngineCallbacks to_clients);

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "engine/change_keeper.hpp"
-#include "engine/engine.hpp"
 #include "engine/frame_renderer.hpp"
 #include "engine/output.hpp"
 #include "engine/room_engine.hpp"
+#include "engine/shared_hooks.hpp"
 #include "net/access.hpp"
 #include "net/addresses.hpp"
 #include "net/deadlines.hpp"
@@ -37,7 +37,7 @@ struct ServerOptions {
     engine::ChangeKeeper::Store keep_changes = {};
     std::function<bool()> nats_connected = {};  ///< empty: it has nothing to do with NATS
     /// Of a room that servers share, and what its engine says to clients on the way to them. Both or none.
-    std::optional<engine::EngineOptions::Shared> shared = {};
+    std::optional<engine::SharedHooks> shared = {};
     std::function<engine::EngineCallbacks(engine::EngineCallbacks to_clients)> relay = {};
     /// A thread that has something to do and does not come round for longer is not alive.
     std::chrono::milliseconds longest_busy{30'000};

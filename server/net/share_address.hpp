@@ -2,7 +2,7 @@
 
 #include "net/access.hpp"
 #include "net/addresses.hpp"
-#include "room/room.hpp"
+#include "room/answers.hpp"
 
 namespace vrut::server::net {
 

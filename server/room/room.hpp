@@ -20,6 +20,7 @@
 #include "navigation/flight.hpp"
 #include "navigation/gestures.hpp"
 #include "plan/view.hpp"
+#include "room/answers.hpp"
 #include "room/recording.hpp"
 #include "room/scene_state.hpp"
 #include "room/steering.hpp"
@@ -32,28 +33,6 @@ namespace vrut::server::room {
 inline constexpr std::size_t kFramesRemembered = 64;
 /// What a client points at is sent at most 30 times a second.
 inline constexpr SessionTime kPointsApart{33'334};
-
-/// What is to be sent to a client; it must know `revision` of the state first.
-struct Answer {
-    std::string client, text;
-    std::int64_t revision = 0;
-    std::string rejection = {};  ///< why, where the message was rejected
-    std::string code = {};       ///< of that error
-};
-
-/// A picture that somebody asked for beside the live one, as things stood then.
-struct PictureOrder {
-    std::string client;
-    plan::View view;               ///< with its size in pixels
-    protocol::FrameHeader header;  ///< but for number, quality and times
-    protocol::ImageFormat format = protocol::ImageFormat::jpeg;
-    int jpeg_quality = 90;
-    std::optional<int> samples = {};  ///< none: as many as at full accuracy
-};
-
-/// Where others may watch, for a client that has opened the page at this address; empty: it has not.
-using ShareAddress =
-    std::function<tl::expected<protocol::SharedAddress, protocol::Error>(const std::string& page)>;
 
 struct RoomOptions {
     std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
@@ -115,10 +94,6 @@ public:
     tl::expected<void, protocol::Error> restore(const protocol::LogHeader& header);
     /// As things stand now, for restore() and, behind it, follow(); none while something goes on that they do
     /// not hold.
-    struct Checkpoint {
-        protocol::LogHeader header;
-        protocol::LogLine::Revised revised;
-    };
     std::optional<Checkpoint> checkpoint();
     /// A line for the journal, where the state has a revision that it does not name yet.
     void write_revision();

@@ -181,7 +181,7 @@ RecordingSink::Header Room::log_header() const {
 
 // --- the journal, which another server follows
 
-std::optional<Room::Checkpoint> Room::checkpoint() {
+std::optional<Checkpoint> Room::checkpoint() {
     const bool is_quiet = swings_.empty() && !tap_ && !gestures_.any_pressed() &&
                           gestures_.held_keys().empty() && requests_.empty() && recordings_.empty() &&
                           !steering_.deadline() && !(walls_ && walls_->due);
