@@ -36,6 +36,38 @@ void assign(Member& member, Value&& value) {
         member = static_cast<Member>(std::forward<Value>(value));
 }
 
+// What visitors do whatever the member's type, so that it is compiled once.
+
+/// The name of a member in an error: the path to its object, and its own name.
+std::string path_of(const std::string& path, const char* name);
+/// Null where the object has no such member.
+const Json* find_member(const Json& object, const char* name);
+/// Throws BadJson where the object, to which `path` leads, has no such member.
+const Json& require_member(const Json& object, const char* name, const std::string& path);
+void put(Json& object, const char* name, Json value);
+
+Json number_schema(double min, double max);
+Json integer_schema(std::int64_t min, std::int64_t max);
+Json type_schema(const char* type);
+Json text_schema(std::size_t max);
+Json word_schema(std::span<const std::string_view> words);
+Json list_schema(Json items, std::size_t min, std::size_t max);
+Json table_schema(Json entry);
+Json reference_schema(const char* name);
+Json object_schema();
+void add_property(Json& schema, const char* name, Json property, const char* meaning);
+void add_required(Json& schema, const char* name);
+void add_read_only(Json& schema, const char* name);
+/// Left out where it is empty.
+void add_default(Json& schema, const char* name, Json value);
+
+/// A value of which each member has its default.
+template <class T>
+const T& defaults_of() {
+    static const T defaults{};
+    return defaults;
+}
+
 template <class T>
 T read_struct(const Json& json, const std::string& path);
 template <class T>
@@ -49,7 +81,7 @@ struct Number {
     double min, max;
     double read(const Json& json, const std::string& path) const { return read_number(json, path, min, max); }
     Json write(double value) const { return value; }
-    Json schema() const { return {{"type", "number"}, {"minimum", min}, {"maximum", max}}; }
+    Json schema() const { return number_schema(min, max); }
 };
 
 struct Integer {
@@ -61,13 +93,13 @@ struct Integer {
     Json write(T value) const {
         return value;
     }
-    Json schema() const { return {{"type", "integer"}, {"minimum", min}, {"maximum", max}}; }
+    Json schema() const { return integer_schema(min, max); }
 };
 
 struct Flag {
     bool read(const Json& json, const std::string& path) const { return read_bool(json, path); }
     Json write(bool value) const { return value; }
-    Json schema() const { return {{"type", "boolean"}}; }
+    Json schema() const { return type_schema("boolean"); }
 };
 
 /// At most `max` bytes of UTF-8.
@@ -75,7 +107,7 @@ struct Text {
     std::size_t max;
     std::string read(const Json& json, const std::string& path) const { return read_string(json, path, max); }
     Json write(const std::string& value) const { return value; }
-    Json schema() const { return {{"type", "string"}, {"maxLength", max}}; }
+    Json schema() const { return text_schema(max); }
 };
 
 /// An enumerator by its name: words[0] is that of value 0.
@@ -87,7 +119,7 @@ struct Word {
     Json write(Enum value) const {
         return words[static_cast<std::size_t>(value)];
     }
-    Json schema() const { return {{"enum", words}}; }
+    Json schema() const { return word_schema(words); }
 };
 template <class... Words>
 constexpr Word<sizeof...(Words)> word(Words... words) {
@@ -99,12 +131,7 @@ struct Vector {
     double min, max;
     V read(const Json& json, const std::string& path) const { return read_vector<V>(json, path, min, max); }
     Json write(const V& value) const { return to_json(value); }
-    Json schema() const {
-        return {{"type", "array"},
-                {"items", Number{min, max}.schema()},
-                {"minItems", V::length()},
-                {"maxItems", V::length()}};
-    }
+    Json schema() const { return list_schema(Number{min, max}.schema(), V::length(), V::length()); }
 };
 
 /// 16 numbers row by row.
@@ -112,9 +139,7 @@ struct Matrix {
     double max;  ///< of each number's size
     glm::dmat4 read(const Json& json, const std::string& path) const { return read_matrix(json, path, max); }
     Json write(const glm::dmat4& value) const { return to_json(value); }
-    Json schema() const {
-        return {{"type", "array"}, {"items", Number{-max, max}.schema()}, {"minItems", 16}, {"maxItems", 16}};
-    }
+    Json schema() const { return list_schema(Number{-max, max}.schema(), 16, 16); }
 };
 
 template <class Element>
@@ -134,9 +159,7 @@ struct List {
         for (const T& value : values) json.push_back(element.write(value));
         return json;
     }
-    Json schema() const {
-        return {{"type", "array"}, {"items", element.schema()}, {"minItems", min}, {"maxItems", max}};
-    }
+    Json schema() const { return list_schema(element.schema(), min, max); }
 };
 
 template <class T>
@@ -150,7 +173,7 @@ struct Object {
 template <class Kind>
 struct Defined : Kind {
     const char* name;
-    Json schema() const { return {{"$ref", std::string("#/$defs/") + name}}; }
+    Json schema() const { return reference_schema(name); }
 };
 
 /// {"ID or NAME": {…}}, to be written only.
@@ -161,7 +184,7 @@ struct Table {
         for (const auto& [key, value] : values) json[key] = write_struct(value);
         return json;
     }
-    Json schema() const { return {{"type", "object"}, {"additionalProperties", schema_of_struct<T>()}}; }
+    Json schema() const { return table_schema(schema_of_struct<T>()); }
 };
 
 /// {"NAME": value}, to be written only.
@@ -174,7 +197,7 @@ struct ValuesByName {
         for (const auto& [name, value] : values) json[name] = kind.write(value);
         return json;
     }
-    Json schema() const { return {{"type", "object"}, {"additionalProperties", kind.schema()}}; }
+    Json schema() const { return table_schema(kind.schema()); }
 };
 
 /// What is shared because it is large and seldom changes.
@@ -208,15 +231,12 @@ public:
         : object_(object), target_(target), path_(path) {}
 
     template <class Member, class Kind>
-    void required(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        if (!object_.contains(name))
-            throw BadJson{error_code::bad_message, "member '" + path_to(name) + "' is missing"};
-        optional(name, member, kind, meaning);
+    void required(const char* name, Member T::*member, const Kind& kind, const char*) {
+        read(name, member, kind, &require_member(object_, name, path_));
     }
     template <class Member, class Kind>
     void optional(const char* name, Member T::*member, const Kind& kind, const char*) {
-        if (const auto found = object_.find(name); found != object_.end())
-            assign(target_.*member, kind.read(*found, path_to(name)));
+        read(name, member, kind, find_member(object_, name));
     }
     /// Members that stand in the same object.
     template <class Member>
@@ -235,7 +255,10 @@ public:
     }
 
 private:
-    std::string path_to(const char* name) const { return path_.empty() ? name : path_ + "." + name; }
+    template <class Member, class Kind>
+    void read(const char* name, Member T::*member, const Kind& kind, const Json* found) {
+        if (found) assign(target_.*member, kind.read(*found, path_of(path_, name)));
+    }
 
     const Json& object_;
     T& target_;
@@ -250,9 +273,9 @@ public:
     template <class Member, class Kind>
     void required(const char* name, Member T::*member, const Kind& kind, const char*) {
         if constexpr (!IsOptional<Member>::value)
-            object_[name] = kind.write(value_.*member);
+            put(object_, name, kind.write(value_.*member));
         else if (value_.*member)
-            object_[name] = kind.write(*(value_.*member));
+            put(object_, name, kind.write(*(value_.*member)));
     }
     /// What has its default is left out.
     template <class Member, class Kind>
@@ -260,8 +283,7 @@ public:
         if constexpr (requires { (value_.*member).empty(); }) {
             if ((value_.*member).empty()) return;
         } else if constexpr (requires { value_.*member == value_.*member; }) {
-            const T defaults{};
-            if (value_.*member == defaults.*member) return;
+            if (value_.*member == defaults_of<T>().*member) return;
         }
         required(name, member, kind, meaning);
     }
@@ -292,18 +314,14 @@ public:
 
     template <class Member, class Kind>
     void required(const char* name, Member T::*, const Kind& kind, const char* meaning) {
-        add(name, kind, meaning);
-        if (!IsOptional<Member>::value) schema_["required"].push_back(name);
+        add_property(schema_, name, kind.schema(), meaning);
+        if (!IsOptional<Member>::value) add_required(schema_, name);
     }
     template <class Member, class Kind>
     void optional(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        add(name, kind, meaning);
-        if constexpr (!IsOptional<Member>::value) {
-            const Json value = kind.write(T{}.*member);
-            const bool says_nothing =
-                value.is_string() ? value.template get_ref<const std::string&>().empty() : value.empty();
-            if (!says_nothing) schema_["properties"][name]["default"] = value;
-        }
+        add_property(schema_, name, kind.schema(), meaning);
+        if constexpr (!IsOptional<Member>::value)
+            add_default(schema_, name, kind.write(defaults_of<T>().*member));
     }
     template <class Member>
     void inlined(Member T::*) {
@@ -317,16 +335,10 @@ public:
     template <class Member, class Kind>
     void fixed(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
         required(name, member, kind, meaning);
-        schema_["properties"][name]["readOnly"] = true;
+        add_read_only(schema_, name);
     }
 
 private:
-    template <class Kind>
-    void add(const char* name, const Kind& kind, const char* meaning) {
-        Json& schema = schema_["properties"][name] = kind.schema();
-        schema["description"] = meaning;
-    }
-
     Json& schema_;
 };
 
@@ -349,7 +361,7 @@ Json write_struct(const T& value) {
 
 template <class T>
 Json schema_of_struct() {
-    Json schema = {{"type", "object"}, {"properties", Json::object()}, {"required", Json::array()}};
+    Json schema = object_schema();
     SchemaWriter<T> writer(schema);
     describe(writer, static_cast<const T*>(nullptr));
     return schema;

@@ -8,8 +8,6 @@
 
 namespace vrut::protocol {
 
-Json nullable(Json schema) { return {{"anyOf", {{{"type", "null"}}, std::move(schema)}}}; }
-
 namespace {
 
 /// An entry's key, or `other` where that is allowed.

@@ -10,6 +10,12 @@ namespace vrut::protocol {
 
 /// {"anyOf": [null, …]}.
 Json nullable(Json schema);
+/// Of a patch without a member yet.
+Json patch_object_schema();
+
+[[noreturn]] void refuse_read_only(const char* name, const std::string& path);
+/// Throws BadJson where the patch has a member that is none of the known.
+void refuse_unknown(const Json& patch, std::span<const std::string_view> known, const std::string& path);
 
 /// Applies a patch's members to a struct.
 template <class T>
@@ -20,36 +26,29 @@ public:
 
     template <class Member, class Kind>
     void writable(const char* name, Member T::*member, const Kind& kind, const char*) {
-        const auto found = look_up(name);
-        if (found == patch_.end()) return;
+        const Json* found = look_up(name);
+        if (!found) return;
         Member& target = target_.*member;
         const Member& start = start_.*member;
         if (found->is_null())
             target = start;
         else if constexpr (requires { kind.patch(target, start, *found, path_); })
-            kind.patch(target, start, *found, path_to(name));
+            kind.patch(target, start, *found, path_of(path_, name));
         else
-            assign(target, kind.read(*found, path_to(name)));
+            assign(target, kind.read(*found, path_of(path_, name)));
     }
     template <class Member, class Kind>
     void fixed(const char* name, Member T::*, const Kind&, const char*) {
-        if (look_up(name) != patch_.end())
-            throw BadJson{error_code::read_only, "'" + path_to(name) + "' is read-only"};
+        if (look_up(name)) refuse_read_only(name, path_);
     }
     /// To be called at the end: every member of the patch must have been described.
-    void finish() const {
-        for (const auto& [name, value] : patch_.items())
-            if (std::find(known_.begin(), known_.end(), name) == known_.end())
-                throw BadJson{error_code::unknown_member,
-                              "the state has no member '" + path_to(excerpt(name)) + "'"};
-    }
+    void finish() const { refuse_unknown(patch_, known_, path_); }
 
 private:
-    Json::const_iterator look_up(const char* name) {
+    const Json* look_up(const char* name) {
         known_.push_back(name);
-        return patch_.find(name);
+        return find_member(patch_, name);
     }
-    std::string path_to(const std::string& name) const { return path_.empty() ? name : path_ + "." + name; }
 
     const Json& patch_;
     T& target_;
@@ -77,14 +76,14 @@ public:
     template <class Member, class Kind>
     void writable(const char* name, Member T::*member, const Kind& kind, const char*) {
         Member& target = target_.*member;
-        const auto found = document_.find(name);
-        const std::string path = path_.empty() ? name : path_ + "." + name;
+        const Json* found = find_member(document_, name);
+        const std::string path = path_of(path_, name);
         if constexpr (requires { kind.restore(target, *found, path); }) {
-            if (found != document_.end()) kind.restore(target, *found, path);
+            if (found) kind.restore(target, *found, path);
         } else if constexpr (IsOptional<Member>::value) {
             target.reset();
-            if (found != document_.end()) assign(target, kind.read(*found, path));
-        } else if (found != document_.end() && *found != kind.write(target)) {
+            if (found) assign(target, kind.read(*found, path));
+        } else if (found && *found != kind.write(target)) {
             // A value of the scene's own may lie beyond what clients may say.
             assign(target, kind.read(*found, path));
         }
@@ -113,9 +112,9 @@ public:
     template <class Member, class Kind>
     void writable(const char* name, Member T::*, const Kind& kind, const char*) {
         if constexpr (requires { kind.patch_schema(); })
-            schema_["properties"][name] = nullable(kind.patch_schema());
+            put(schema_["properties"], name, nullable(kind.patch_schema()));
         else
-            schema_["properties"][name] = nullable(kind.schema());
+            put(schema_["properties"], name, nullable(kind.schema()));
     }
     template <class Member, class Kind>
     void fixed(const char*, Member T::*, const Kind&, const char*) {}
@@ -126,7 +125,7 @@ private:
 
 template <class T>
 Json patch_schema_of_struct() {
-    Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
+    Json schema = patch_object_schema();
     PatchSchemaWriter<T> writer(schema);
     describe(writer, static_cast<const T*>(nullptr));
     return schema;
@@ -167,9 +166,7 @@ struct Items : Table<T> {
             if (const auto found = json.find(key); found != json.end())
                 restore_struct(item, *found, path + "." + key);
     }
-    Json patch_schema() const {
-        return {{"type", "object"}, {"additionalProperties", nullable(patch_schema_of_struct<T>())}};
-    }
+    Json patch_schema() const { return table_schema(nullable(patch_schema_of_struct<T>())); }
 };
 
 /// The clients' own: a patch adds entries, and null removes one, or gives it back where it was there at the
