@@ -8,7 +8,7 @@ namespace vrut::plan {
 namespace {
 
 /// Of boxes, of the distance from the eye, or in pixels there. The larger one counts.
-constexpr double kMargin = 1e-4, kMarginPixels = 1.0 / 8;
+constexpr double kDepthMargin = 1e-4, kMarginPixels = 1.0 / 8;
 /// The least depth of a box, of the distance of its farthest point. On a face that begins nearer,
 /// interpolated depth is rounded by more than the margin.
 constexpr double kLeastNearest = 1.0 / 64;
@@ -85,7 +85,7 @@ std::optional<OcclusionBox> occlusion_box(const DrawItem& item, const View& view
         for (int edge = 0; edge < 3; ++edge) reach[axis] += std::abs(glm::dot(axes[axis], edges[edge]));
     const double farthest = glm::length(center) + glm::length(reach);
     const double pixel = projection_of(view).width() / view.width;  // at distance 1
-    reach += farthest * std::max(kMargin, kMarginPixels * pixel);
+    reach += farthest * std::max(kDepthMargin, kMarginPixels * pixel);
     const double nearest = -center.z - glm::dot(glm::abs(glm::transpose(axes)[2]), reach);
     if (!(nearest > std::max(2 * near_distance(view), kLeastNearest * farthest))) return {};
     OcclusionBox box{item.node};

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "vectors.hpp"
+
 namespace vrut {
 
 namespace {
@@ -22,11 +24,6 @@ constexpr double kNothing = 0.1;  // of the error now being mended: errors below
 constexpr double kNearlyAsBad = 0.7;  // of an error: a shorter edge with that is halved before
 constexpr double kShorter = 0.5;
 constexpr int kMostSwaps = 12;  // after one halving
-
-glm::dvec3 unit_or_zero(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0 ? v / length : glm::dvec3(0);
-}
 
 /// Of `point` from the line through `a` and `b`, the shortest way.
 glm::dvec3 off_line(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b) {

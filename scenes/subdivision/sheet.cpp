@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "vectors.hpp"
+
 namespace vrut {
 
 namespace {
@@ -13,11 +15,6 @@ constexpr double kLeast = 0.18;    // cosine of about 80 degrees, between a corn
 constexpr double kNoArea = 1e-12;  // square metres, twice
 constexpr double kNormalSteps = 1e4;  // of a normal's coordinate: a hundredth of a degree
 constexpr double kAlikeNormals = 0.035;
-
-glm::dvec3 unit_or_zero(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0 ? v / length : glm::dvec3(0);
-}
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace vrut::server::measure {
 
 namespace {
 
-constexpr int kViews = 4, kPicksInView = 60, kPictures = 5;
+constexpr int kPickingViews = 4, kPicksInView = 60, kPictures = 5;
 
 double ms_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -115,7 +115,7 @@ scene::Index at_point(const std::vector<scene::Index>& ids, const plan::View& vi
 }  // namespace
 
 Row Laboratory::picking_row(const Subject& subject, const std::string& method) const {
-    const int picks = kViews * kPicksInView;
+    const int picks = kPickingViews * kPicksInView;
     return row_of({"picking", method, subject, kModes[0], {}, Experiment::Judge::none, picks}, {});
 }
 
@@ -132,8 +132,8 @@ void Laboratory::run_picking(const Subject& subject, const PartDone& done) {
     std::array<Answers, kPickings.size()> answers;
     auto& [ray, ids, small_ids, all] = answers;
     renderer_.node_ids(subject.home);  // everything comes to the GPU
-    for (int v = 0; v < kViews; ++v) {
-        const plan::View view = on_orbit(subject.home, v, kViews);
+    for (int v = 0; v < kPickingViews; ++v) {
+        const plan::View view = on_orbit(subject.home, v, kPickingViews);
         const plan::View small = view_with(view, {.scale = 0.5});
         std::vector<scene::Index> pictures[2];
         for (int i = 0; i < kPictures; ++i) {
@@ -151,13 +151,13 @@ void Laboratory::run_picking(const Subject& subject, const PartDone& done) {
             ray.wrong += met != truth;
             ids.wrong += at_point(pictures[0], view, point) != truth;
             small_ids.wrong += at_point(pictures[1], small, point) != truth;
-            if (done) done((v + static_cast<double>(i + 1) / kPicksInView) / kViews);
+            if (done) done((v + static_cast<double>(i + 1) / kPicksInView) / kPickingViews);
         }
     }
     for (std::size_t k = 0; k < answers.size(); ++k) {
         Row row = wanted[k];
         row.cost.ms = spread_of(answers[k].ms);
-        row.wrong = answers[k].wrong / static_cast<double>(kViews * kPicksInView);
+        row.wrong = answers[k].wrong / static_cast<double>(kPickingViews * kPicksInView);
         if (!rows_.has(row)) rows_.add(row);
     }
 }

@@ -35,12 +35,12 @@ struct Range {
     }
 };
 
-struct Frame {
+struct PlotFrame {
     Range x, y;
 };
 
-Frame frame_of(const Plot& plot) {
-    Frame frame;
+PlotFrame frame_of(const Plot& plot) {
+    PlotFrame frame;
     for (const Series& series : plot.series)
         for (const Mark& mark : series.marks) {
             if (series.look == Series::Look::stairs) continue;
@@ -81,7 +81,7 @@ std::vector<Box> places_beside(double x, double y, std::size_t letters) {
 }
 
 /// Words beside points, where they meet neither one another nor other points.
-void write_labels(std::ostream& out, const Plot& plot, const Frame& frame) {
+void write_labels(std::ostream& out, const Plot& plot, const PlotFrame& frame) {
     constexpr double kPoint = 0.008;
     const auto part = [](const Range& range, double value) {
         return std::log(std::max(value, range.low) / range.low) / std::log(range.high / range.low);
@@ -118,7 +118,7 @@ void write_labels(std::ostream& out, const Plot& plot, const Frame& frame) {
 }
 
 /// Points and their whiskers as a block of lines: x y x5 x95 y5 y95.
-void write_data(std::ostream& out, const Plot& plot, const Frame& frame) {
+void write_data(std::ostream& out, const Plot& plot, const PlotFrame& frame) {
     const double lowest = plot.floor.value_or(frame.y.low);
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         out << "$d" << i << " << EOD\n";
@@ -197,7 +197,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string script_of(const Plot& plot, const std::filesystem::path& output) {
-    const Frame frame = frame_of(plot);
+    const PlotFrame frame = frame_of(plot);
     std::string name = plot.file;
     std::replace(name.begin(), name.end(), '-', '_');  // which is all that gnuplot takes in names
     std::ostringstream out;
