@@ -8,7 +8,6 @@
 
 #include "io/read_scene.hpp"
 #include "io/write_scene.hpp"
-#include "measure/glass.hpp"
 #include "room_relay.hpp"
 
 namespace vrut::server::commands {
@@ -666,10 +665,6 @@ CLI::Option* add_glass(Command& command, ChartArguments& arguments) {
                     "(1,1000), Wi-Fi (20,20), bad Wi-Fi (100,2) and a phone network (200,1).")
         ->type_name("RTT,RATE[,LOSS]")
         ->allow_extra_args(false)
-        ->check([](const std::string& text) {
-            const auto link = measure::parse_link(text);
-            return link ? std::string() : link.error();
-        })
         ->needs(glass)
         ->group(kMeasurement);
     add_number(command, "--latency-target", arguments.latency_target_ms, 5.0, 1000.0,

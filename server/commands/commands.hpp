@@ -136,6 +136,8 @@ struct ChartArguments {
     std::uint64_t most_triangles = 10'000'000;
     std::optional<int> device;
 };
+/// In a program of its own, vrut-preview-chart: most who use this program chart nothing, and none waits until
+/// that is compiled. Here it takes the place of this process; throws std::runtime_error if it is not there.
 void chart_command(ChartArguments arguments);
 
 /// Where the program's scenes may lie, seen from the program: as installed, and as built.

@@ -1,4 +1,4 @@
-#include "commands/glass_charts.hpp"
+#include "charts/glass_charts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -104,7 +104,12 @@ Session session_of(const fs::path& file, const ChartArguments& arguments) {
 std::vector<SimulatedLink> links_of(const ChartArguments& arguments) {
     if (arguments.links.empty()) return usual_links();
     std::vector<SimulatedLink> links;
-    for (const std::string& text : arguments.links) links.push_back(parse_link(text).value());
+    for (const std::string& text : arguments.links) {
+        auto link = parse_link(text);
+        if (!link)
+            throw std::invalid_argument("--link: " + link.error() + "; see 'vrut-preview chart --help'");
+        links.push_back(*std::move(link));
+    }
     return links;
 }
 

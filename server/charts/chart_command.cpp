@@ -2,8 +2,8 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "charts/glass_charts.hpp"
 #include "commands/commands.hpp"
-#include "commands/glass_charts.hpp"
 #include "measure/calibrate.hpp"
 #include "measure/charts.hpp"
 #include "measure/experiments.hpp"
