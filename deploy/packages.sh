@@ -10,7 +10,7 @@ BUILD_PACKAGES=(
     g++ cmake:cmake ninja-build:ninja pkgconf:pkg-config
     libboost1.81-dev nlohmann-json3-dev libexpected-dev libcli11-dev libspdlog-dev libglm-dev
     libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev libwebp-dev libtiff-dev libstb-dev zlib1g-dev libssl-dev libqrencode-dev libnats-dev
-    libosd-dev libassimp-dev libmeshoptimizer-dev libdraco-dev esbuild:esbuild
+    libassimp-dev libmeshoptimizer-dev libdraco-dev esbuild:esbuild
 )
 # To build it with films (.mp4), which it leaves out without them. They bring the libraries that it loads for one.
 # shellcheck disable=SC2034
@@ -31,7 +31,7 @@ PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file mmdebstrap:mmdebstrap)
 # To test: doctest, a browser and what steers it, and what checks the source's format, the shaders and the manual pages.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
-    doctest-dev nodejs:node npm:npm chromium:chromium clang-format-14:clang-format-14 glslang-tools:glslangValidator
+    doctest-dev libosd-dev nodejs:node npm:npm chromium:chromium clang-format-14:clang-format-14 glslang-tools:glslangValidator
     groff-base:groff
 )
 # To test all: another browser, what the charts, the examples and deploy/ work with, what checks the source and its
