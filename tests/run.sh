@@ -48,6 +48,8 @@ configure=()
 if command -v ccache >/dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$ROOT CCACHE_NOHASHDIR=1
     configure=(-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
+else
+    export CMAKE_CXX_COMPILER_LAUNCHER=$ROOT/tests/timed-compiler.sh  # for the budget of compile time
 fi
 default_labels='unit|net|replay|page|contract|cli|walk'
 done_steps=0
@@ -198,6 +200,7 @@ if $default; then
 fi
 if $ci; then
     step "build release" "$compile_remedy" build release
+    step "budget of compile time" "Do what is said above." node tests/compile-budget.mjs build/release
     begin asan build asan --target tests_without_gpu
     asan=$background
     # The files of a library that are compiled as one are, to it, suspicious.
