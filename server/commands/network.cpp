@@ -48,7 +48,8 @@ void print_addresses(const net::ServerOptions& options, std::uint16_t port, cons
     for (const std::string& host : hosts)
         std::cout << "listening on " << url(host, port, secure && !net::is_loopback(host), path, token)
                   << std::endl;
-    if (secure && net::is_any(options.listen.host))
+    // In a container, the host's own address is the only one of these that may lead to it.
+    if (net::is_any(options.listen.host) && !net::is_loopback(hosts[0]))
         std::cout << "and for this machine on " << url("127.0.0.1", port, false, path, token) << std::endl;
 }
 

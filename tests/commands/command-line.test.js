@@ -7,6 +7,7 @@ const os = require('node:os');
 const path = require('node:path');
 const { after, test } = require('node:test');
 const zlib = require('node:zlib');
+const { Running } = require('../deploy/helpers.js');
 
 const PROGRAM = process.env.VRUT_PREVIEW;
 const CAR = process.env.VRUT_CAR;
@@ -310,11 +311,12 @@ for (const signal of ['SIGTERM', 'SIGINT']) {
   });
 }
 
-test('beyond this machine a token is made, and printed with a code to scan', async () => {
-  const { server, ready } = serve(CAR, '--listen', '0.0.0.0:0');
-  const printed = await ready;
-  assert.match(printed, /listening on http:\/\/[\d.]+:\d+\/#token=[0-9a-f]{32}\n/);
-  server.kill('SIGKILL');
+test('beyond this machine a token is made, and printed with a code to scan, and for this machine', async () => {
+  const server = new Running(PROGRAM, ['serve', CAR, '--listen', '0.0.0.0:0']);
+  const [, host, port, token] = await server.printed(/listening on http:\/\/([\d.]+):(\d+)\/#token=([0-9a-f]{32})\n/);
+  // Without a network, the address before is the same.
+  if (!host.startsWith('127.')) await server.printed(new RegExp(`for this machine on http://127\\.0\\.0\\.1:${port}/#token=${token}\n`));
+  await server.stop('SIGKILL');
 });
 
 test('a start where too few threads can be had is told in a sentence', (t) => {
