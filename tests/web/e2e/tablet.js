@@ -17,14 +17,20 @@ export function launchBrowser() {
   return chromium.launch({ executablePath: BROWSER, headless: true, chromiumSandbox: false, args: ARGUMENTS });
 }
 
-/** Runs in the page, before it: keeps its WebSockets where a test finds them, and grants while it wants no pictures. */
+/** Runs in the page, before it: keeps its WebSockets and the newest revision where tests find them, and grants while it wants no pictures. */
 function rememberSockets() {
   window.sockets = [];
+  window.revision = 0;
   window.keptGrants = null;
   window.WebSocket = class extends WebSocket {
     constructor(...about) {
       super(...about);
       window.sockets.push(this);
+      window.revision = 0;
+      this.addEventListener('message', ({ data }) => {
+        const { type, revision } = typeof data === 'string' ? JSON.parse(data) : {};
+        if (type === 'state' || type === 'patch') window.revision = revision;
+      });
       if (window.keptGrants) window.keptGrants = []; // a connection's grants are its own
     }
 
@@ -217,6 +223,12 @@ export class Tablet {
     return this.page.evaluate((text) => window.sockets.at(-1).send(text), JSON.stringify(message));
   }
 
+  /** Waits until the page has received a revision, or a later one, and shown what it has of it beside the picture. */
+  async follows(revision = this.wire.revision) {
+    await this.page.waitForFunction((number) => window.revision >= number, revision);
+    await this.page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); }));
+  }
+
   /** Waits until the canvas shows a frame, or a later one. */
   shows(frame) {
     return this.page.waitForFunction((number) => Number(document.querySelector('#view').dataset.frame) >= number, frame);
@@ -306,9 +318,16 @@ export class Tablet {
     }, png.toString('base64'));
   }
 
-  /** Keeps a picture of the page where the environment names a folder for them. */
-  async screenshot(name) {
+  /**
+   * Keeps a picture of the page where the environment names a folder for them.
+   *
+   * @param {string} name
+   * @param {number} [revision] that the picture in it shows, where the page wants none otherwise
+   */
+  async screenshot(name, revision) {
     const folder = process.env.VRUT_SCREENSHOTS;
-    if (folder) await this.page.screenshot({ path: path.join(folder, `${name}.png`) });
+    if (!folder) return;
+    if (revision !== undefined) await this.glance(revision);
+    await this.page.screenshot({ path: path.join(folder, `${name}.png`) });
   }
 }

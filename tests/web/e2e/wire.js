@@ -2,6 +2,8 @@ import { frameHeader } from '../../../web-client/connection/frame-header.js';
 import { mergePatch } from '../../../web-client/base/merge-patch.js';
 
 const LIMIT_MS = 30_000;
+/** Samples of a picture at rest, after which none comes. */
+const FINEST = 16;
 
 /** Listens in on a page's WebSocket: all of this is about its latest connection. */
 export class Wire {
@@ -61,6 +63,11 @@ export class Wire {
       const last = this.frames.at(-1);
       return last?.quality.level === 'still' && last.revision >= revision && last;
     });
+  }
+
+  /** Waits for the picture after which none comes while nothing changes. */
+  finest() {
+    return this.until('the finest picture', () => this.frames.at(-1)?.quality.samples === FINEST);
   }
 
   /** Waits until no frame has come for a while. */
