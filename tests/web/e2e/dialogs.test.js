@@ -4,8 +4,8 @@ import { Server, temporaryFolder } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
 const SIZES = {
-  tablet: { width: 1180, height: 820, pixelRatio: 2 },
-  phone: { width: 390, height: 844, pixelRatio: 3 },
+  tablet: { width: 1180, height: 820, pixelRatio: 1 },
+  phone: { width: 390, height: 844, pixelRatio: 1 },
   desktop: { width: 1440, height: 900, pixelRatio: 1 },
 };
 const GESTURES = [
@@ -23,22 +23,29 @@ function faults(dialog) {
   }).map((element) => element.outerHTML.slice(0, 90));
 }
 
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
 for (const [name, size] of Object.entries(SIZES)) {
   describe(`dialogs on a ${name}`, { skip: browserIsMissing }, () => {
+    const testOnTablet = name === 'tablet' ? test : () => {};
     let server;
-    let browser;
     let tablet;
     let page;
 
     before(async () => {
       server = await Server.start(0, ['--record', temporaryFolder()]);
-      browser = await launchBrowser();
       tablet = await Tablet.open(browser, server.address, size, { isFirstVisit: true, reducedMotion: 'reduce' });
       ({ page } = tablet);
     });
 
     after(async () => {
-      await browser?.close();
+      for (const context of browser?.contexts() ?? []) await context.close();
       await server?.stop();
     });
 
@@ -49,6 +56,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     const focused = () => page.evaluate(() => document.activeElement.getAttribute('aria-label') ?? document.activeElement.textContent);
     const keys = () => tablet.wire.sent.filter(({ type }) => type === 'keydown').length;
     const openMenu = async () => {
+      if (await page.locator('#menu.open').count()) return;
       await page.locator('#menu-button').tap();
       await page.locator('#menu.open').waitFor();
     };
@@ -76,7 +84,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await tablet.pictures(false);
     });
 
-    test('a key opens it, but not while something is typed; its keys do not steer', async () => {
+    testOnTablet('a key opens it, but not while something is typed; its keys do not steer', async () => {
       await page.keyboard.press('?');
       await help().waitFor();
       await page.keyboard.press('ArrowLeft');
@@ -114,7 +122,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.locator('[data-section="views"] summary').tap();
     });
 
-    test('a button in the menu opens it, and has the focus afterwards', async () => {
+    testOnTablet('a button in the menu opens it, and has the focus afterwards', async () => {
       await page.locator('#menu').getByRole('button', { name: 'Help' }).tap();
       await help().waitFor();
       assert.equal(await help().evaluate((dialog) => dialog.contains(document.activeElement)), true);
@@ -129,6 +137,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     });
 
     test('the settings leave the picture as it is, where there is room for both', async () => {
+      await openMenu();
       await page.getByRole('button', { name: 'Settings' }).tap();
       await settings().waitFor();
       const { x, y, width, height } = await settings().boundingBox();
@@ -160,7 +169,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.deepEqual(tablet.wire.sent.slice(sent).filter(({ type }) => type.startsWith('pointer')), []);
     });
 
-    test('what has to be said is said in them', async () => {
+    testOnTablet('what has to be said is said in them', async () => {
       const camera = await tablet.settings('camera');
       await tablet.say({ type: 'resize', width: size.width, height: size.height, pixelRatio: size.pixelRatio });
       const watcher = await Tablet.open(browser, server.address, SIZES.phone, { userAgent: 'Visitor (Android)' });
@@ -233,7 +242,6 @@ for (const [name, size] of Object.entries(SIZES)) {
 
 test('a dialog that cannot be loaded is explained, and comes later', { skip: browserIsMissing }, async () => {
   let server = await Server.start();
-  const browser = await launchBrowser();
   try {
     const tablet = await Tablet.open(browser, server.address, SIZES.phone, { reducedMotion: 'reduce' });
     const { page } = tablet;
@@ -255,7 +263,7 @@ test('a dialog that cannot be loaded is explained, and comes later', { skip: bro
     await settings.tap();
     await page.locator('dialog.settings').waitFor();
   } finally {
-    await browser.close();
+    for (const context of browser.contexts()) await context.close();
     await server.stop();
   }
 });

@@ -5,16 +5,23 @@ import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
 const SIZES = {
-  tablet: { width: 1180, height: 820, pixelRatio: 2 },
-  phone: { width: 390, height: 844, pixelRatio: 3 },
-  desktop: { width: 1440, height: 900, pixelRatio: 1 },
+  tablet: { width: 1180, height: 820, pixelRatio: 1 },
+  phone: { width: 390, height: 844, pixelRatio: 1 },
 };
 const LEAST_TARGET = 44;
 
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
 for (const [name, size] of Object.entries(SIZES)) {
   describe(`the bar of the selected part on a ${name}`, { skip: browserIsMissing }, () => {
+    const testOnTablet = name === 'tablet' ? test : () => {};
     let server;
-    let browser;
     let tablet;
     let page;
     let other;
@@ -22,7 +29,6 @@ for (const [name, size] of Object.entries(SIZES)) {
 
     before(async () => {
       server = await Server.start();
-      browser = await launchBrowser();
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
       await tablet.shows((await tablet.wire.still()).frame);
@@ -36,7 +42,7 @@ for (const [name, size] of Object.entries(SIZES)) {
 
     after(async () => {
       await other?.leave();
-      await browser?.close();
+      for (const context of browser?.contexts() ?? []) await context.close();
       await server?.stop();
     });
 
@@ -85,7 +91,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.locator('#part').getByText('Spoiler').waitFor({ state: 'detached' });
     });
 
-    test('a long path is shortened', async () => {
+    testOnTablet('a long path is shortened', async () => {
       await page.setViewportSize({ width: 260, height: size.height });
       await select('Spoiler');
       await page.locator('#part.shortened').waitFor();
@@ -94,7 +100,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.locator('#part:not(.shortened)').waitFor();
     });
 
-    test('fits, by a key', async () => {
+    testOnTablet('fits, by a key', async () => {
       const { eye } = state().camera;
       await button('Fit').focus();
       await page.keyboard.press('Enter');
@@ -102,7 +108,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.deepEqual(tablet.wire.sent.findLast(({ type }) => type === 'fit').node, ids.Spoiler);
     });
 
-    test('hides, and shows again what it hid, and nothing else', async () => {
+    testOnTablet('hides, and shows again what it hid, and nothing else', async () => {
       await other.patch({ nodes: { [ids.Interior]: { active: false } } });
       await select('Spoiler');
       await button('Hide').tap();
@@ -120,7 +126,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.waitForFunction(() => document.activeElement.id === 'view');
     });
 
-    test('isolates: what is beside it and beside all above it is hidden, and comes back by one patch', async () => {
+    testOnTablet('isolates: what is beside it and beside all above it is hidden, and comes back by one patch', async () => {
       await select('Bonnet');
       await button('Isolate').tap();
       await until('the wheels hidden', () => hidden().includes(ids.Wheels));
@@ -129,8 +135,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.ok(!hidden().includes(ids.Presentation), 'the background stays');
       assert.equal(state().selection.node, ids.Bonnet);
       await button('Show all').waitFor();
-      await tablet.glance(tablet.wire.revision);
-      await tablet.screenshot(`part-${name}-isolated`);
+      await tablet.screenshot(`part-${name}-isolated`, tablet.wire.revision);
       const before = tablet.wire.sent.length;
       await button('Show all').tap();
       await until('all as before', () => hidden().length === 1);
@@ -138,7 +143,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.equal(tablet.wire.sent.slice(before).filter(({ type }) => type === 'patch').length, 1);
     });
 
-    test('who only watches sees the path', async () => {
+    testOnTablet('who only watches sees the path', async () => {
       await select('Bonnet');
       const watcher = await Tablet.open(browser, `${server.address}#watch`, size);
       await watcher.page.locator('#part').getByText('Bonnet').waitFor();
