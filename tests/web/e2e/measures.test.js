@@ -4,7 +4,7 @@ import { pose } from './camera.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
-const SIZE = { width: 1180, height: 820, pixelRatio: 2 };
+const SIZE = { width: 1180, height: 820, pixelRatio: 1 };
 /** Two corners of the number plate, which no panel covers. */
 const CORNERS = [[110, 500], [213, 553]];
 

@@ -4,8 +4,8 @@ import { assertTurned, pose } from './camera.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
-const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
-const PHONE = { width: 390, height: 844, pixelRatio: 3 };
+const TABLET = { width: 1180, height: 820, pixelRatio: 1 };
+const PHONE = { width: 390, height: 844, pixelRatio: 1 };
 /** A drag over this turns by 180°. */
 const SHORTER_SIDE = 820;
 const ASKS_AFTER_MS = 5000;
@@ -132,7 +132,7 @@ describe('what can go wrong', { skip: browserIsMissing }, () => {
     await patient.page.clock.install();
     await patient.page.goto(server.address);
     await patient.wire.still();
-    await patient.wire.quiet(1000);
+    await patient.wire.finest();
     const mark = patient.wire.sent.length;
     server.signal('SIGSTOP');
     patient.serverAway = true;
