@@ -4,23 +4,29 @@ import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
 const SIZES = {
-  tablet: { width: 1180, height: 820, pixelRatio: 2 },
-  phone: { width: 390, height: 844, pixelRatio: 3 },
-  desktop: { width: 1440, height: 900, pixelRatio: 1 },
+  tablet: { width: 1180, height: 820, pixelRatio: 1 },
+  phone: { width: 390, height: 844, pixelRatio: 1 },
 };
 /** Off the car's left side, which its front left door fills the middle of. */
 const BESIDE = { eye: [5, 0.9, 0.3], focus: [0, 0.9, 0.3], center: [0, 0.9, 0.3], up: [0, 1, 0], fov: 30 };
 
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
 for (const [name, size] of Object.entries(SIZES)) {
   describe(`on a ${name}`, { skip: browserIsMissing }, () => {
+    const testOnTablet = name === 'tablet' ? test : () => {};
     let server;
-    let browser;
     let tablet;
     let page;
 
     before(async () => {
       server = await Server.start();
-      browser = await launchBrowser();
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
       await until('control', () => state()?.control.holder);
@@ -29,7 +35,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     });
 
     after(async () => {
-      await browser?.close();
+      for (const context of browser?.contexts() ?? []) await context.close();
       await server?.stop();
     });
 
@@ -42,7 +48,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await until('the camera', () => Object.entries(camera).every(([member, value]) => String(state().camera[member]) === String(value)));
     };
 
-    test('doors open from a strip, from the bar of the selected part, and by a tap', async () => {
+    testOnTablet('doors open from a strip, from the bar of the selected part, and by a tap', async () => {
       await stand(BESIDE);
       await button('#bar', 'Doors').tap();
       const doors = page.locator('#strip').getByRole('switch');
@@ -52,8 +58,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await doors.nth(1).tap();
       await until('the door to open', () => changed() === 1);
       assert.equal(await doors.nth(1).isChecked(), true);
-      await tablet.glance(tablet.wire.revision);
-      await tablet.screenshot(`doors-${name}`);
+      await tablet.screenshot(`doors-${name}`, tablet.wire.revision);
       await doors.nth(1).tap();
       await until('the door to close', () => changed() === 0);
       assert.equal(await doors.nth(1).isChecked(), false);
@@ -94,8 +99,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await until('the strip in the inset', () => inset().bottom > size.height - y + 40);
       const above = await fitted();
       assert.ok(above > alone + 0.005, `${above} above ${alone}`);
-      await tablet.glance(tablet.wire.revision);
-      await tablet.screenshot(`fit-above-the-strip-${name}`);
+      await tablet.screenshot(`fit-above-the-strip-${name}`, tablet.wire.revision);
       await button('#bar', 'Views').tap();
       await button('#bar', 'More').tap();
       await until('the menu in the inset', () => (size.width > 600 ? inset().right > 380 : inset().bottom > 0.6 * size.height));
@@ -103,7 +107,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await until('the bar alone', () => inset().bottom === Math.round(size.height - y));
     });
 
-    test('a drag in the driver\'s seat looks around', async () => {
+    testOnTablet('a drag in the driver\'s seat looks around', async () => {
       const [seat] = Object.entries(state().cameras).find(([, camera]) => camera.name === 'Driver\'s seat');
       await stand({ node: Number(seat) });
       const [x, y] = [size.width / 3, size.height / 2];
