@@ -4,12 +4,13 @@ import { pose } from './camera.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
-const PHONE = { width: 390, height: 844, pixelRatio: 3 };
+const PHONE = { width: 390, height: 844, pixelRatio: 1 };
+const OFFERED_MS = 8000; // what a visitor may do
+/** Longer than the second after which the server takes a holder for quiet, who keeps control all the same. */
+const QUIET_MS = 1200;
 /** What presenters hold. */
 const SIZES = {
-  tablet: { width: 1180, height: 820, pixelRatio: 2 },
-  phone: PHONE,
-  desktop: { width: 1440, height: 900, pixelRatio: 1 },
+  tablet: { width: 1180, height: 820, pixelRatio: 1 },
 };
 
 describe('control', { skip: browserIsMissing }, () => {
@@ -31,7 +32,9 @@ describe('control', { skip: browserIsMissing }, () => {
         server = await Server.start();
         presenter = await Tablet.open(browser, server.address, size, { userAgent: 'Presenter (Windows)', reducedMotion: 'reduce' });
         await seen(presenter);
-        visitor = await Tablet.open(browser, server.address, PHONE, { userAgent: 'Visitor (Android)', reducedMotion: 'reduce' });
+        visitor = await Tablet.open(browser, 'about:blank', PHONE, { userAgent: 'Visitor (Android)', reducedMotion: 'reduce' });
+        await visitor.page.clock.install();
+        await visitor.page.goto(server.address);
         await seen(visitor);
       });
 
@@ -60,10 +63,11 @@ describe('control', { skip: browserIsMissing }, () => {
         await pill(visitor, 'Windows is in control');
         assert.equal(await bar(visitor).textContent(), '');
         const { camera, view } = await presenter.wire.still();
-        await presenter.page.waitForTimeout(1200);
+        await presenter.page.waitForTimeout(QUIET_MS);
         await touch(visitor);
         await bar(visitor).getByText('Windows is in control.').waitFor();
         await visitor.screenshot(`control-${name}-visitor`);
+        await visitor.page.clock.fastForward(OFFERED_MS);
         await bar(visitor).getByText('Windows is in control.').waitFor({ state: 'detached' });
         await visitor.page.keyboard.press('ArrowLeft');
         await bar(visitor).getByText('Windows is in control.').waitFor();
