@@ -26,6 +26,7 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
       const tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       const { page } = tablet;
       await tablet.shows((await tablet.wire.still()).frame);
+      await tablet.pictures(false);
       const unfold = (where = '#menu') => page.locator(`${where} details`).evaluateAll((all) => {
         for (const details of all) details.open = true;
       });

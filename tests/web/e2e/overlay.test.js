@@ -4,10 +4,10 @@ import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
 const SIZES = {
-  tablet: { width: 1180, height: 820, pixelRatio: 2 },
-  'upright tablet': { width: 820, height: 1180, pixelRatio: 2 },
-  phone: { width: 390, height: 844, pixelRatio: 3 },
-  'phone on its side': { width: 844, height: 390, pixelRatio: 3 },
+  tablet: { width: 1180, height: 820, pixelRatio: 1 },
+  'upright tablet': { width: 820, height: 1180, pixelRatio: 1 },
+  phone: { width: 390, height: 844, pixelRatio: 1 },
+  'phone on its side': { width: 844, height: 390, pixelRatio: 1 },
   desktop: { width: 1440, height: 900, pixelRatio: 1 },
 };
 
@@ -41,6 +41,7 @@ describe('what lies on the picture does not cover one another', { skip: browserI
     test(`on a ${name}, when a visitor is refused with the menu open, and closed`, async () => {
       const presenter = await Tablet.open(browser, server.address, size, { userAgent: 'Presenter (Windows)', reducedMotion: 'reduce' });
       await presenter.wire.still();
+      await presenter.pictures(false);
       await presenter.say({ type: 'control', action: 'take' });
       await presenter.say({ type: 'pick', x: size.width / 2, y: size.height / 2, then: 'select' });
       await presenter.wire.until('a part', () => presenter.wire.state.selection.name);
@@ -48,6 +49,7 @@ describe('what lies on the picture does not cover one another', { skip: browserI
         { userAgent: 'Visitor (Android)', reducedMotion: 'reduce', locale: 'cs-CZ' });
       const { page } = visitor;
       await visitor.shows((await visitor.wire.still()).frame);
+      await visitor.pictures(false);
       await page.locator('#menu-button').tap();
       await page.locator('#menu.open').waitFor();
       for (const section of ['views', 'presentation']) await page.locator(`[data-section="${section}"] > summary`).tap();
