@@ -12,7 +12,6 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
   let browser;
 
   before(async () => {
-    server = await Server.start();
     browser = await launchBrowser();
   });
 
@@ -23,6 +22,7 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
 
   for (const [name, size] of Object.entries(SIZES)) {
     test(`on ${name}`, async (t) => {
+      server = await Server.start();
       const tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       const { page } = tablet;
       await tablet.shows((await tablet.wire.still()).frame);
@@ -104,7 +104,6 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
       }
       assert.deepEqual(tablet.complaints, []);
       await page.context().close();
-      server = await Server.start(server.port);
     });
   }
 });
