@@ -11,10 +11,18 @@ const SIZES = {
   phone: { width: 390, height: 844, pixelRatio: 1 },
 };
 
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
 for (const [name, size] of Object.entries(SIZES)) {
   describe(`cues on a ${name}`, { skip: browserIsMissing }, () => {
+    const testOnTablet = name === 'tablet' ? test : () => {};
     let server;
-    let browser;
     let presenter;
     let watchers;
     let colleague;
@@ -23,7 +31,6 @@ for (const [name, size] of Object.entries(SIZES)) {
 
     before(async () => {
       server = await Server.start();
-      browser = await launchBrowser();
       const open = async (address) => {
         const tablet = await Tablet.open(browser, address, size, { reducedMotion: 'reduce' });
         await tablet.shows((await tablet.wire.still()).frame);
@@ -32,7 +39,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       };
       presenter = await open(server.address);
       watchers = [];
-      for (let i = 0; i < 3; ++i) watchers.push(await open(`${server.address}#watch`));
+      for (let i = 0; i < (name === 'tablet' ? 3 : 1); ++i) watchers.push(await open(`${server.address}#watch`));
       colleague = await open(server.address);
       ({ page } = presenter);
       menu = page.locator('[data-section="cues"]');
@@ -41,7 +48,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     });
 
     after(async () => {
-      await browser?.close();
+      for (const context of browser?.contexts() ?? []) await context.close();
       await server?.stop();
     });
 
@@ -130,7 +137,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       }
     });
 
-    test('after a lost connection, the presenter goes on where they were', async () => {
+    testOnTablet('after a lost connection, the presenter goes on where they were', async () => {
       const { connections } = presenter.wire;
       await page.evaluate(() => window.sockets.at(-1).close());
       await until('another connection', () => presenter.wire.connections > connections && state()?.cue);
@@ -215,7 +222,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await chip('Arrival', true).waitFor();
     });
 
-    test('one who steers meanwhile stops the way, and the next cue begins there', async () => {
+    testOnTablet('one who steers meanwhile stops the way, and the next cue begins there', async () => {
       await presenter.say({ type: 'patch', patch: { cues: { Close: { ms: 60_000 } } } });
       await page.keyboard.press('PageDown');
       await until('the cue', () => state().cue.name === 'Close');
@@ -232,7 +239,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await until('the next cue', () => state().cue.name === 'Wide');
     });
 
-    test('the list is a file, and comes back from it, but for what does not go with the scene', async () => {
+    testOnTablet('the list is a file, and comes back from it, but for what does not go with the scene', async () => {
       await page.locator('#menu-button').tap();
       const coming = page.waitForEvent('download');
       await button('Save the list').tap();
@@ -262,7 +269,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.deepEqual(state().cues, list.cues);
     });
 
-    test('the presenter is lost while they prepare: all keep what they have, and a colleague goes on', async () => {
+    testOnTablet('the presenter is lost while they prepare: all keep what they have, and a colleague goes on', async () => {
       await button('Arrival').tap();
       await until('the first cue', () => state().cue?.name === 'Arrival' && state().camera.fov === state().cues.Arrival.camera.fov);
       await button('Present').tap();

