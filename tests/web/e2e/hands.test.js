@@ -5,7 +5,7 @@ import { Server } from './program.js';
 import { HeldLink } from './held-link.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
-const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
+const TABLET = { width: 1180, height: 820, pixelRatio: 1 };
 const MIDDLE = [TABLET.width / 2, TABLET.height / 2];
 const WITHIN_PX = 2;
 const FADED_WITHIN_MS = 2000;
@@ -16,16 +16,22 @@ const grid = [-0.4, -0.2, 0, 0.3, 0.45].flatMap((x) => [-0.4, 0, 0.35].map((y) =
 /** Where what is drawn at a place, measured from the view's middle, is seen while the picture is moved. */
 const moved = ({ a: scale, e: x, f: y }, place) => [scale * place[0] + x, scale * place[1] + y];
 
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
 describe('hands on a tablet without WebGL 2 whose pictures are late', { skip: browserIsMissing }, () => {
   let server;
   let link;
-  let browser;
   let tablet;
 
   before(async () => {
     server = await Server.start();
     link = await HeldLink.open(server.port);
-    browser = await launchBrowser();
     tablet = await Tablet.open(browser, link.address, TABLET);
     await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
     await tablet.page.evaluate(() => {
@@ -42,7 +48,7 @@ describe('hands on a tablet without WebGL 2 whose pictures are late', { skip: br
   });
 
   after(async () => {
-    await browser?.close();
+    for (const context of browser?.contexts() ?? []) await context.close();
     link?.close();
     await server?.stop();
   });
@@ -201,20 +207,18 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
   const SIZE = { width: 800, height: 600, pixelRatio: 1 };
   let server;
   let link;
-  let browser;
   let tablet;
 
   before(async () => {
     server = await Server.start();
     link = await HeldLink.open(server.port);
-    browser = await launchBrowser();
     tablet = await Tablet.open(browser, link.address, SIZE, { hasWebGl: true });
     await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
     await tablet.page.evaluate(countRefreshes);
   });
 
   after(async () => {
-    await browser?.close();
+    for (const context of browser?.contexts() ?? []) await context.close();
     link?.close();
     await server?.stop();
   });
@@ -365,8 +369,10 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
     });
     const late = await pixels();
     link.release();
-    await settled();
-    await tablet.wire.quiet(400);
+    const there = ({ eye, focus }) => JSON.stringify([eye, focus]);
+    await tablet.wire.until('the end of the flight', () => there(tablet.wire.state.camera) === there(tablet.wire.state.views.home));
+    await tablet.shows((await tablet.wire.stillOf(tablet.wire.revision)).frame);
+    await nextRefreshes();
     const truth = await pixels();
     assert.ok(meanDifference(late, truth) < 0.5 * meanDifference(before, truth));
   });
@@ -377,9 +383,11 @@ describe('hands on a tablet with WebGL 2 whose pictures are late', { skip: brows
     await tablet.page.evaluate(async () => {
       const canvas = document.querySelector('#view');
       const lose = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
-      const restored = new Promise((resolve) => { canvas.addEventListener('webglcontextrestored', resolve); });
+      const happens = (type) => new Promise((resolve) => { canvas.addEventListener(type, resolve, { once: true }); });
+      const [lost, restored] = [happens('webglcontextlost'), happens('webglcontextrestored')];
       lose.loseContext();
-      await new Promise((resolve) => { setTimeout(resolve, 100); });
+      await lost;
+      await new Promise((resolve) => { setTimeout(resolve); }); // the event is over, and whether it was prevented is known
       lose.restoreContext();
       await restored;
     });
