@@ -10,7 +10,6 @@ const PHONE = { width: 390, height: 844, pixelRatio: 3 };
 const SHORTER_SIDE = 820;
 const LEAST_PSNR_DB = 35;
 const IDLE_MS = 2000;
-const FINEST = 16; // samples of a picture at rest; where it takes longer than IDLE_MS, that is no idle time
 
 describe('a car on a tablet', { skip: browserIsMissing }, () => {
   let server;
@@ -40,7 +39,7 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
   });
 
   test('which is the picture that render makes from the same camera', async () => {
-    await tablet.wire.quiet(1000);
+    await tablet.wire.finest();
     const compare = async () => {
       const { frame } = await tablet.look();
       const { camera, width, height, quality } = tablet.wire.frames.find((header) => header.frame === frame);
@@ -108,7 +107,7 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
   });
 
   test('while nothing changes, no frame comes', async () => {
-    await tablet.wire.until('the finest picture', () => tablet.wire.frames.at(-1).quality.samples === FINEST);
+    await tablet.wire.finest();
     const frames = tablet.wire.frames.length;
     await tablet.wire.quiet(IDLE_MS);
     assert.equal(tablet.wire.frames.length, frames);
