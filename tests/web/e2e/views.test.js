@@ -8,8 +8,8 @@ import { frameHeader } from '../../../web-client/connection/frame-header.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
-const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
-const PHONE = { width: 390, height: 844, pixelRatio: 3 };
+const TABLET = { width: 1180, height: 820, pixelRatio: 1 };
+const PHONE = { width: 390, height: 844, pixelRatio: 1 };
 const SCENES = fileURLToPath(new URL('../../../scenes/teaching', import.meta.url));
 
 const saved = ({ eye, focus, up, center, fov }) => ({ eye, focus, up, center, fov });
@@ -182,17 +182,25 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
   });
 
   test('the picture is saved with all its pixels', async () => {
+    const withRatio = async (pixelRatio) => {
+      await tablet.say({ type: 'resize', width: TABLET.width, height: TABLET.height, pixelRatio });
+      const last = () => tablet.wire.frames.at(-1);
+      await tablet.shows((await until(`a picture of ratio ${pixelRatio}`, () => last().view.pixelRatio === pixelRatio && last())).frame);
+    };
+    await withRatio(2);
     const download = tablet.page.waitForEvent('download');
     await button(presentation, 'Save picture').tap();
     const file = await download;
     assert.match(file.suggestedFilename(), /^scene-\d{8}-\d{6}\.jpg$/);
     const header = frameHeader(Uint8Array.from(await readFile(await file.path())).buffer);
     const { view } = tablet.wire.frames.at(-1);
+    assert.equal(header.width, 2 * TABLET.width);
     assert.equal(header.width, Math.round(view.width * view.pixelRatio));
     assert.equal(header.height, Math.round(view.height * view.pixelRatio));
     assert.equal(header.quality.jpegQuality, 95);
     assert.deepEqual(header.camera.eye, state().camera.eye);
     await button(presentation, 'Save picture').waitFor();
+    await withRatio(1);
   });
 
   test('another scene is opened', async () => {
