@@ -39,7 +39,7 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
   });
 
   test('which is the picture that render makes from the same camera', async () => {
-    await tablet.wire.finest();
+    await tablet.shows((await tablet.wire.still()).frame);
     const compare = async () => {
       const { frame } = await tablet.look();
       const { camera, width, height, quality } = tablet.wire.frames.find((header) => header.frame === frame);
