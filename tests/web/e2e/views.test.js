@@ -188,6 +188,7 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
       await tablet.shows((await until('a picture of that size', () => last().view.width === view.width && last())).frame);
     };
     await resized({ width: 400, height: 300, pixelRatio: 2 });
+    await tablet.pictures(false); // they would be refined before it is drawn
     const download = tablet.page.waitForEvent('download');
     // No tap: while the server draws on the same machine, that may take as long as a long press, which is none.
     await button(presentation, 'Save picture').click();
@@ -201,6 +202,7 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
     assert.equal(header.quality.jpegQuality, 95);
     assert.deepEqual(header.camera.eye, state().camera.eye);
     await button(presentation, 'Save picture').waitFor();
+    await tablet.pictures(true);
     await resized(TABLET);
   });
 
