@@ -2,14 +2,7 @@ import { recall, remember } from '../base/memory.js';
 
 /** @import { Page } from './section.js' */
 
-/** What gives a dialog's content, by name: its modules are loaded when it is opened first. */
-const LOADS = {
-  settings: async () => (await import('./dialogs/settings.js')).settings,
-  help: async () => (await import('./dialogs/help.js')).help,
-  people: async () => (await import('./dialogs/people.js')).people,
-};
-
-/** The dialogs over all else, one at a time: the settings, and the help, which a browser's first visit opens. */
+/** The dialogs over all else, one at a time: the help opens on a browser's first visit. */
 export class Dialogs {
   #page;
   /** @type {?HTMLDialogElement} */
@@ -39,16 +32,16 @@ export class Dialogs {
   }
 
   /**
-   * @param {keyof typeof LOADS} name
+   * @param {'settings'|'help'|'people'} name
    * @param {HTMLElement} [opener] gets the focus when the dialog is closed
    */
   async open(name, opener) {
     // Nor one that is closed before this would come to it.
     if (this.#open) return;
-    const loaded = await Promise.all([import('./dialogs/dialog.js'), LOADS[name]()]).catch(() => null);
+    const loaded = await import('./dialogs/contents.js').catch(() => null);
     if (!loaded) return this.#page.report({ code: 'not-loaded' });
     if (this.#open) return;
-    const [{ showDialog }, build] = loaded;
+    const { showDialog, [name]: build } = loaded;
     const { show, ...about } = build(this.#page);
     this.#open = showDialog({ name, ...about }, () => {
       this.#open = null;

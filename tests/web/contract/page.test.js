@@ -92,7 +92,7 @@ test('each of the few modules that are imported at once is asked for at once, an
 test('modules that are imported later are there, and may be kept for good', async () => {
   const announced = announcedIn(referencesOf((await get('', BROWSER)).text));
   const later = [...await importedFrom(announced, AT_ONCE_OR_LATER)].filter((path) => !announced.includes(path));
-  for (const name of ['cs', 'help', 'people', 'settings']) assert.ok(later.some((path) => path.includes(`/${name}-`)), later.join());
+  for (const name of ['cs', 'contents']) assert.ok(later.some((path) => path.includes(`/${name}-`)), later.join());
   for (const path of later) {
     const { headers } = await get(path, BROWSER);
     assert.equal(headers['content-encoding'], 'gzip', path);

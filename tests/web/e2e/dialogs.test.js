@@ -249,10 +249,10 @@ test('a dialog that cannot be loaded is explained, and comes later', { skip: bro
     await page.locator('#menu-button').tap();
     const settings = page.getByRole('button', { name: 'Settings' });
     // As where a server of another version has taken the place of the page's.
-    await page.route('**/settings-*.js', (route) => route.abort());
+    await page.route('**/contents-*.js', (route) => route.abort());
     await settings.tap();
     await page.locator('#lines').getByRole('button', { name: 'Reload the page' }).waitFor();
-    await page.unroute('**/settings-*.js');
+    await page.unroute('**/contents-*.js');
 
     await server.stop('SIGKILL');
     await page.locator('#view.stale').waitFor();
