@@ -11,6 +11,15 @@ export function element(tag, properties = {}, ...children) {
 }
 
 /**
+ * Whether a key belongs to what has the focus: somebody types there, or it is a dialog, which has keys of its own.
+ *
+ * @param {?EventTarget} target of the key's event
+ */
+export function keepsKeys(target) {
+  return target instanceof Element && target.closest('input, textarea, select, dialog') !== null;
+}
+
+/**
  * With an icon of index.html; `only` with that, or else the label is its `lastChild`.
  *
  * @param {string} label

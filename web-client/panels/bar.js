@@ -1,5 +1,5 @@
 import { pictureOfCue } from '../base/cues.js';
-import { button, element } from '../base/element.js';
+import { button, element, keepsKeys } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
 import { rows, toggle } from './controls.js';
@@ -91,8 +91,7 @@ export class Bar {
   #key(event) {
     const { key, target, altKey, ctrlKey, metaKey, shiftKey } = event;
     const { role } = this.#store.now;
-    const isTyped = target instanceof Element && target.closest('input, textarea, select, dialog');
-    if (!(key in STEPS) || altKey || ctrlKey || metaKey || shiftKey || isTyped) return;
+    if (!(key in STEPS) || altKey || ctrlKey || metaKey || shiftKey || keepsKeys(target)) return;
     if (role !== 'control' || !this.#presentation.hasCues) return;
     event.preventDefault();
     if (!event.repeat) this.#presentation.step(STEPS[key]);

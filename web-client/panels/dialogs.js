@@ -1,3 +1,4 @@
+import { keepsKeys } from '../base/element.js';
 import { recall, remember } from '../base/memory.js';
 
 /** @import { Page } from './section.js' */
@@ -24,8 +25,7 @@ export class Dialogs {
     // Before the menu, which keeps its keys to itself.
     document.addEventListener('keydown', (event) => {
       const { key, ctrlKey, metaKey, target } = event;
-      const types = target instanceof Element && target.closest('input, select');
-      if (key !== '?' || ctrlKey || metaKey || types || store.now.role !== 'control') return;
+      if (key !== '?' || ctrlKey || metaKey || keepsKeys(target) || store.now.role !== 'control') return;
       event.preventDefault();
       this.open('help');
     }, { capture: true });

@@ -72,7 +72,11 @@ for (const [name, size] of Object.entries(SIZES)) {
       await add('Far');
       assert.deepEqual(state().cues.Close.nodes, { 101: { active: false } });
       await button('Change Close').tap();
-      await menu.getByRole('textbox', { name: 'What to say at Close' }).fill('See the lamp.\nIt is new.');
+      const words = menu.getByRole('textbox', { name: 'What to say at Close' });
+      await words.pressSequentially('New? See');
+      assert.equal(await words.inputValue(), 'New? See');
+      assert.equal(await page.locator('dialog').count(), 0);
+      await words.fill('See the lamp.\nIt is new.');
       await menu.getByRole('slider', { name: 'The way there takes' }).fill('0.2');
       await until('the words', () => state().cues.Close.text === 'See the lamp.\nIt is new.');
       await until('the time', () => state().cues.Close.ms === 200);

@@ -130,6 +130,9 @@ for (const [name, size] of Object.entries(SIZES)) {
       await until('done', () => state().markers['note 1'].done);
       await button('Change Dent').tap();
       const words = menu.getByRole('textbox', { name: 'Text of Dent' });
+      await words.pressSequentially('? Why');
+      assert.match(await words.inputValue(), /\? Why/);
+      assert.equal(await page.locator('dialog').count(), 0);
       await words.fill('Dent in the\ndoor <b>');
       await words.blur();
       await until('the text', () => state().markers['note 2'].text === 'Dent in the\ndoor <b>');
