@@ -66,6 +66,12 @@ export function written(value, digits = 0, unit = '') {
   return unit ? `${number}\u00a0${unit}` : number;
 }
 
+/** Words as a sentence lists them. @param {string[]} words */
+export function listed(words) {
+  // British English has no comma before "and", as the other texts.
+  return new Intl.ListFormat(current === 'en' ? 'en-GB' : current).format(words);
+}
+
 /** A moment, in milliseconds since 1970, as the language and the user's clock write it. @param {number} ms */
 export function writtenTime(ms) {
   return new Intl.DateTimeFormat(current, { dateStyle: 'medium', timeStyle: 'short' }).format(ms);

@@ -32,7 +32,7 @@ export class Dialogs {
   }
 
   /**
-   * @param {'settings'|'help'|'people'} name
+   * @param {'settings'|'help'|'people'|'deletion'} name
    * @param {HTMLElement} [opener] gets the focus when the dialog is closed
    */
   async open(name, opener) {

@@ -31,7 +31,7 @@ export class Menu {
   /** @type {Section[]} */
   #sections = [];
 
-  /** Empty until `rebuild`. @param {Omit<Page, 'makeRoom'|'notePictures'> & {setLanguage: (code: string) => void}} page */
+  /** Empty until `rebuild`. @param {Omit<Page, 'makeRoom'|'notePictures'|'openDialog'> & {setLanguage: (code: string) => void}} page */
   constructor(page) {
     const { store } = page;
     const opener = /** @type {HTMLButtonElement} */ (document.getElementById('menu-button'));
@@ -44,6 +44,7 @@ export class Menu {
     this.#page = {
       ...page,
       makeRoom: () => matchMedia(SHEET).matches && this.close(),
+      openDialog: (name, opener) => this.#dialogs.open(name, opener),
       notePictures: new Pictures({ store, commands: page.commands, find: ({ markers }, name) => pictureOfNote(markers, name) }),
     };
     this.#dialogs = new Dialogs(this.#page);

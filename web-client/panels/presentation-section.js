@@ -1,6 +1,6 @@
+import { added, isNone } from '../base/added.js';
 import { download } from '../base/download.js';
 import { button, element } from '../base/element.js';
-import { asItWas } from '../base/notes.js';
 import { onChange } from '../base/store.js';
 import { holderName, say } from '../base/texts.js';
 import { gentleWalls } from './comfort.js';
@@ -24,8 +24,8 @@ const LARGEST_SIDE = 8192;
  * @returns {Section}
  */
 export function presentationSection(page) {
-  const { commands, store, offer } = page;
-  const others = scenes({ commands, store, offer });
+  const { commands, store } = page;
+  const others = scenes(page);
   return {
     name: 'presentation',
     title: say('presentation.title'),
@@ -76,8 +76,8 @@ function snapshot(commands, store) {
   };
 }
 
-/** @param {Pick<Page, 'commands'|'store'|'offer'>} page */
-function scenes({ commands, store, offer }) {
+/** @param {Pick<Page, 'commands'|'store'|'offer'|'openDialog'>} page */
+function scenes({ commands, store, offer, openDialog }) {
   let names = /** @type {?string[]} */ (null);
   const select = element('select');
   const label = element('label', { className: 'control' }, say('scenes.label'), select);
@@ -86,6 +86,8 @@ function scenes({ commands, store, offer }) {
   const none = element('p', { className: 'note', hidden: true }, say('scenes.none'));
   const upAxis = choice(say('scenes.upAxis'), [['y', 'Y'], ['z', 'Z']], (axis) => turn(axis));
   const asInFile = button(say('scenes.asInFile'), () => giveBack(), { icon: 'back' });
+  const remove = button(say('deletion.open'), () => openDialog('deletion', remove), { icon: 'remove' });
+  remove.ariaHasPopup = 'dialog';
 
   const show = async (scene) => {
     const { file } = stateOf(store).scene;
@@ -109,9 +111,12 @@ function scenes({ commands, store, offer }) {
     });
   };
   const giveBack = async () => {
-    const before = stateOf(store);
-    if (!await commands.patch({ views: null, markers: null, measures: null, unit: null, cues: null, nodes: null })) return;
-    const undo = () => commands.patch(backTo(before, stateOf(store)));
+    const { nodes, views: { home } } = stateOf(store);
+    if (!await commands.patch({ nodes: null, views: { home: null } })) return;
+    const undo = () => {
+      const since = Object.keys(stateOf(store).nodes).map((id) => [id, null]);
+      return commands.patch({ nodes: { ...Object.fromEntries(since), ...nodes }, views: { home } });
+    };
     offer(say('scenes.isAsInFile'), say('views.undo'), undo);
   };
   const list = () => {
@@ -128,7 +133,7 @@ function scenes({ commands, store, offer }) {
     list();
   };
   return {
-    content: [row, none, upAxis.element, asInFile],
+    content: [row, none, upAxis.element, asInFile, remove],
     unfolded: () => names && ask(),
     show: each(
       onChange(({ client }) => [client], (client) => client && ask()),
@@ -137,36 +142,9 @@ function scenes({ commands, store, offer }) {
         upAxis.element.hidden = !axis;
         upAxis.show(axis);
       }),
-      onChange(({ state }) => [isAsInFile(state)], (hidden) => Object.assign(asInFile, { hidden }))),
+      onChange(({ state }) => [Object.keys(state.nodes).length === 0], (hidden) => Object.assign(asInFile, { hidden })),
+      onChange(({ state }) => [isNone(added(state))], (hidden) => Object.assign(remove, { hidden }))),
   };
-}
-
-/**
- * Whether nothing that is kept of a scene differs from its file, as far as a client can tell.
- *
- * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'cues'|'nodes'>} state
- */
-export function isAsInFile({ views, markers, measures, cues, nodes }) {
-  return ![nodes, markers, measures, cues].some(hasMembers) && !Object.keys(views).some((name) => name !== 'home');
-}
-
-/**
- * The patch that makes what is kept of a scene what it was `before`.
- *
- * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'unit'|'cues'|'nodes'>} before
- * @param {Pick<StateDocument, 'views'|'markers'|'measures'|'cues'|'nodes'>} now
- */
-export function backTo(before, now) {
-  const all = (member) => ({ ...Object.fromEntries(Object.keys(now[member]).map((key) => [key, null])), ...before[member] });
-  const notes = Object.fromEntries(Object.entries(before.markers).map(([name, note]) => [name, asItWas(note)]));
-  return {
-    views: all('views'), markers: { ...all('markers'), ...notes }, measures: all('measures'), unit: before.unit, cues: all('cues'),
-    nodes: all('nodes'),
-  };
-}
-
-function hasMembers(object = {}) {
-  return Object.keys(object).length > 0;
 }
 
 /**

@@ -18,9 +18,9 @@ import { onChange } from '../base/store.js';
  * @typedef {{store: Store, commands: Commands, meter: Meter, report: (error: *) => void,
  *   offer: (text: string, label: string, act: () => void) => void, nextTap: NextTap, snapping: Snapping,
  *   turnPointing: () => void, present: () => void, makeRoom: () => void, fetchFile: (name: string) => Promise<Blob>,
- *   notePictures: Pictures}} Page `turnPointing`: a finger begins or ends to
- *   point; `present`: opens what a presenter has of the cues; `makeRoom`: closes the menu where that covers most of the
- *   picture; `fetchFile`: of the server, or an error for `report`
+ *   notePictures: Pictures, openDialog: (name: 'deletion', opener: HTMLElement) => void}} Page
+ *   `turnPointing`: a finger begins or ends to point; `present`: opens what a presenter has of the cues; `makeRoom`:
+ *   closes the menu where that covers most of the picture; `fetchFile`: of the server, or an error for `report`
  *
  * Says what to tap, and promises where in which frame the picture is tapped next; null where it is not.
  *

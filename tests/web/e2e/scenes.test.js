@@ -4,6 +4,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { assertClean } from './axe.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
@@ -49,6 +50,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     const list = () => section.getByRole('combobox', { name: 'Another scene' });
     const line = (label) => page.locator('#lines').getByRole('button', { name: label });
     const asInFile = () => section.getByRole('button', { name: 'Give back what the file says' });
+    const deletion = () => section.getByRole('button', { name: 'Delete cues, notes, measures and views…' });
 
     test('the list marks the one that is shown', async () => {
       const { file } = state().scene;
@@ -71,24 +73,57 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.locator('#lines').getByText(`Opened ${file}.`).waitFor();
     });
 
-    test('what differs from the file is given back, and that is undone', async () => {
+    test('parts and variants are given back as in the file, and nothing else, and that is undone', async () => {
       await asInFile().waitFor({ state: 'hidden' });
+      await deletion().waitFor({ state: 'hidden' });
       await tablet.say({ type: 'patch', patch: {
         nodes: { 100: { active: false } }, views: { Left: {}, home: { fov: 30 } }, markers: { a: { point: [0, 0, 0], text: 'Gap' } },
         measures: { Wide: { picks: [[0, 0, 0], [1, 0, 0]].map((point) => ({ node: 100, snap: 'point', points: [point] })) } },
+        cues: { Arrival: { text: 'Welcome' } }, unit: { shown: 'cm' },
       } });
       await until('a view', () => state().views.Left);
-      const { views, markers, measures, nodes } = structuredClone(state());
+      const before = structuredClone(state());
+      const kept = ({ markers, measures, cues, unit, views: { home, ...views } }) => ({ markers, measures, cues, unit, views });
       await asInFile().tap();
-      await until('the file', () => !state().views.Left);
-      assert.deepEqual([state().markers, state().measures, state().nodes, Object.keys(state().views)], [{}, {}, {}, ['home']]);
+      await until('the file', () => Object.keys(state().nodes).length === 0);
+      assert.deepEqual(kept(state()), kept(before));
       assert.notEqual(state().views.home.fov, 30);
       await asInFile().waitFor({ state: 'hidden' });
       await tablet.screenshot(`scenes-${name}-file`);
       await line('Undo').tap();
-      await until('all as before', () => state().views.Left);
-      assert.deepEqual([state().views, state().markers, state().measures, state().nodes], [views, markers, measures, nodes]);
+      await until('all as before', () => state().nodes[100]);
+      assert.deepEqual([kept(state()), state().nodes, state().views], [kept(before), before.nodes, before.views]);
       await asInFile().waitFor();
+    });
+
+    test('cues, notes, measures and views are deleted after a question that counts them, and that is undone', async () => {
+      const dialog = page.locator('dialog.deletion');
+      const answer = (label) => dialog.getByRole('button', { name: label, exact: true });
+      const gone = () => dialog.waitFor({ state: 'detached' });
+      await deletion().tap();
+      await dialog.getByText('Delete 1 cue, 1 note, 1 measure and 1 view?').waitFor();
+      await page.evaluate(() => Promise.allSettled(document.getAnimations().map((animation) => animation.finished)));
+      await tablet.screenshot(`scenes-${name}-deletion`);
+      await assertClean(page, 'the question');
+      const sent = tablet.wire.sent.length;
+      await answer('Keep').tap();
+      await gone();
+      assert.deepEqual(tablet.wire.sent.slice(sent).filter(({ type }) => type === 'patch'), []);
+      await deletion().tap();
+      await tablet.say({ type: 'patch', patch: { views: { Right: {} } } });
+      await dialog.getByText('Delete 1 cue, 1 note, 1 measure and 2 views?').waitFor();
+      const { cues, markers, measures, views, nodes, unit } = structuredClone(state());
+      await answer('Delete').tap();
+      await gone();
+      await until('nothing', () => !state().views.Left);
+      assert.deepEqual([state().cues, state().markers, state().measures, Object.keys(state().views)], [{}, {}, {}, ['home']]);
+      assert.deepEqual([state().nodes, state().unit], [nodes, unit]);
+      await deletion().waitFor({ state: 'hidden' });
+      await tablet.screenshot(`scenes-${name}-deleted`);
+      await line('Undo').tap();
+      await until('all as before', () => state().views.Left);
+      assert.deepEqual([state().cues, state().markers, state().measures, state().views], [cues, markers, measures, views]);
+      await deletion().waitFor();
     });
 
     test('what lies on its side is turned upright, and that is undone', async () => {

@@ -1,6 +1,5 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
-import { mergePatch } from '../../../web-client/base/merge-patch.js';
 import { setLanguage } from '../../../web-client/base/texts.js';
 import {
   bytesWords, hostLines, hostWords, pictureFacts, qualityWords,
@@ -8,9 +7,7 @@ import {
 import {
   backgroundChoice, backgroundFacts, cameraFacts, lightChoice, lightFacts, rendererFacts,
 } from '../../../web-client/panels/dialogs/scene-sections.js';
-import {
-  backTo, holderWords, isAsInFile, snapshotName, snapshotSize,
-} from '../../../web-client/panels/presentation-section.js';
+import { holderWords, snapshotName, snapshotSize } from '../../../web-client/panels/presentation-section.js';
 import { section } from '../../../web-client/panels/section.js';
 import {
   cameraEntries, lookingAt, middleOf, movedView, placeOf, viewNames,
@@ -104,34 +101,6 @@ describe('views', () => {
     assert.deepEqual(movedView(ordered, 'A', 1), { C: { order: 1 }, A: { order: 2 } });
     assert.equal(movedView(ordered, 'B', -1), null);
     assert.equal(movedView(ordered, 'C', 1), null);
-  });
-});
-
-describe('what is kept of a scene', () => {
-  const asInFile = { views: { home: { fov: 40 } }, markers: {}, measures: {}, cues: {}, nodes: {} };
-
-  test('is as in the file without entries and other views', () => {
-    assert.equal(isAsInFile(asInFile), true);
-    assert.equal(isAsInFile({ ...asInFile, nodes: { 1: { active: false } } }), false);
-    assert.equal(isAsInFile({ ...asInFile, markers: { a: {} } }), false);
-    assert.equal(isAsInFile({ ...asInFile, measures: { a: {} } }), false);
-    assert.equal(isAsInFile({ ...asInFile, cues: { a: {} } }), false);
-    assert.equal(isAsInFile({ ...asInFile, views: { home: {}, 'View 1': {} } }), false);
-  });
-
-  test('comes back as it was, without what has come since', () => {
-    const [mm, cm] = ['mm', 'cm'].map((shown) => ({ metres: 1, shown }));
-    const before = {
-      views: { home: { fov: 30 }, A: { fov: 20 } }, markers: { old: { text: 'y' } }, measures: { w: { kind: 'angle' } }, unit: cm,
-      cues: { a: { ms: 5 } }, nodes: { 1: { active: false } },
-    };
-    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' }, old: { text: 'z' } }, measures: {}, unit: mm, cues: { b: {} }, nodes: {} };
-    const patch = backTo(before, now);
-    assert.deepEqual(patch, {
-      views: { home: { fov: 30 }, A: { fov: 20 }, B: null }, markers: { m: null, old: { author: null, view: null, text: 'y' } }, measures: { w: { kind: 'angle' } }, unit: cm,
-      cues: { a: { ms: 5 }, b: null }, nodes: { 1: { active: false } },
-    });
-    assert.deepEqual(mergePatch(now, patch), before);
   });
 });
 
