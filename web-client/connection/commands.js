@@ -53,7 +53,7 @@ export function commandsBy({ ask, refused }) {
     tree: (query) => tell({ type: 'tree', ...query }),
     /** @param {{width: number, height: number}} size */
     snapshot: (size) => draw({ type: 'snapshot', ...size, jpegQuality: 95 }).catch((error) => void refused(error)),
-    /** @param {{name: string, camera?: ClientCue['camera']}|{step: number}} which */
+    /** @param {{name: string, camera?: ClientCue['camera']}} which */
     cue: (which) => tell({ type: 'cue', ...which }),
     /** What of a list of cues does not go with the scene. @param {object} cues @returns {Promise<ServerChecked|undefined>} */
     check: (cues) => tell({ type: 'check', cues }),

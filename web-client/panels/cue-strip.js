@@ -23,7 +23,8 @@ export function cueStrip({ store, pictures, presentation }) {
   const words = element('p', { className: 'words', tabIndex: 0 });
   const nextPicture = picture();
   const nextName = element('span');
-  const next = button('', () => presentation.step(1));
+  let following = /** @type {string|undefined} */ (undefined);
+  const next = button('', () => following !== undefined && presentation.choose(following));
   next.replaceChildren(nextPicture, nextName);
   const prepare = button(say('cues.prepare'), () => presentation.turnPreparing(), { icon: 'hidden' });
   const take = button(say('cues.take'), () => presentation.take(), { icon: 'present' });
@@ -55,7 +56,7 @@ export function cueStrip({ store, pictures, presentation }) {
       const { cues, cue } = state();
       const { prepares, preparedCamera } = store.now;
       const shown = cue?.name ?? '';
-      const following = cueAfter(state(), 1);
+      following = cueAfter(state(), 1);
       words.textContent = cues[prepares ?? shown]?.text ?? '';
       presenter.classList.toggle('wordless', words.textContent === '');
       next.hidden = prepares !== null || following === undefined;

@@ -49,12 +49,18 @@ export class Presentation {
     if (this.#maySteer()) this.#store.set({ prepares: name });
   }
 
-  /** To the next cue or the one before; what is prepared is taken instead of the next. @param {1|-1} by */
+  /**
+   * To the next cue or the one before; what is prepared is taken instead of the next. The cue is named, so that another
+   * step before the answer leads to the same one.
+   *
+   * @param {1|-1} by
+   */
   step(by) {
     if (by > 0 && this.#store.now.prepares !== null) return this.take();
-    if (cueAfter(stateOf(this.#store), by) !== undefined) {
+    const name = cueAfter(stateOf(this.#store), by);
+    if (name !== undefined) {
       this.end();
-      return this.#commands.cue({ step: by });
+      return this.#commands.cue({ name });
     }
     this.#report(new Error(say(by > 0 ? 'cues.isLast' : 'cues.isFirst')));
   }

@@ -21,7 +21,7 @@ test('each command is a message of the protocol', async () => {
   await commands.pick({ x: 1, y: 2, frame: 3 });
   await commands.tree({ only: 'switches' });
   await commands.snapshot({ width: 10, height: 20 });
-  await commands.cue({ step: 1 });
+  await commands.cue({ name: 'Arrival' });
   await commands.check({ format: 'vrut-preview-cues', version: 1, cues: {} });
   await commands.picture({ width: 10, height: 20, cue: 'Arrival' });
   await commands.record('start');

@@ -55,8 +55,29 @@ test('a step back ends it, as it moves what all see; one that there is not does 
   assert.equal(page.asked.length, 0);
   page.set({ state: { cues: CUES, cue: { name: 'Door' } } });
   page.presentation.step(-1);
-  assert.deepEqual(page.asked.map(({ cue }) => cue), [{ step: -1 }]);
+  assert.deepEqual(page.asked.map(({ cue }) => cue), [{ name: 'Arrival' }]);
   assert.equal(page.prepares(), null);
+});
+
+test('steps before the answer lead to one cue, those after it to the next', () => {
+  page.presentation.step(1);
+  page.presentation.step(1);
+  page.set({ state: { cues: CUES, cue: { name: 'Door' } } });
+  page.presentation.step(1);
+  page.presentation.step(-1);
+  page.presentation.step(-1);
+  assert.deepEqual(page.asked.map(({ cue }) => cue.name), ['Door', 'Door', 'Wide', 'Arrival', 'Arrival']);
+});
+
+test('what is taken twice before the answer is one cue, and the next is prepared once', async () => {
+  page.presentation.turnPreparing();
+  page.presentation.take();
+  page.presentation.step(1);
+  assert.deepEqual(page.asked.map(({ cue }) => cue), [{ name: 'Door' }, { name: 'Door' }]);
+  page.asked[0].resolve({});
+  page.asked[1].resolve({});
+  await settled();
+  assert.equal(page.prepares(), 'Wide');
 });
 
 test('what is taken is followed by the next, unless that was ended or another chosen meanwhile', async () => {
