@@ -53,7 +53,9 @@ const connection = new Connection({
   },
 });
 const report = (error) => stage.report(error);
-const commands = commandsBy({ ask: (message) => connection.ask(message), refused: report });
+const commands = commandsBy({
+  ask: (message) => connection.ask(message), refused: report, late: (isLate) => store.set({ isLate }),
+});
 const stage = new Stage({ store, commands, connection, meter, hasToken: token.inAddress });
 const offer = (text, label, act) => stage.offer(text, label, act);
 const nextTap = (text, signal) => stage.nextTap(text, signal);

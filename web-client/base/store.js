@@ -7,11 +7,11 @@
  *   reason?: {code?: string, message: string}}} Phase
  *
  * What the page knows: what the server made it while connected, the state as last heard, the header last drawn, whether
- * that frame is of this connection, what covers the view's sides, what the server measures, which of the sections has
+ * that frame is of this connection, whether what was asked of the server has waited long for its answer, what covers the view's sides, what the server measures, which of the sections has
  * a handle in the picture, whether a finger points, and the cue that is prepared, with its camera where that is another.
  *
  * @typedef {{phase: Phase, role?: ClientHello['role'], client?: string, steers: boolean, state: ?StateDocument,
- *   revision: number, header: ?FrameHeader, hasPicture: boolean,
+ *   revision: number, header: ?FrameHeader, hasPicture: boolean, isLate: boolean,
  *   inset: {top: number, right: number, bottom: number, left: number}, stats: ?ServerStats, language: string,
  *   handled: ?string, points: boolean, prepares: ?string, preparedCamera?: StateDocument['cues'][string]['camera']}} Now
  */
@@ -38,7 +38,7 @@ export function onChange(select, show) {
 export class Store {
   /** @type {Now} */
   now = {
-    phase: { name: 'starting' }, steers: false, state: null, revision: 0, header: null, hasPicture: false,
+    phase: { name: 'starting' }, steers: false, state: null, revision: 0, header: null, hasPicture: false, isLate: false,
     inset: { top: 0, right: 0, bottom: 0, left: 0 }, stats: null,
     language: 'en', handled: null, points: false, prepares: null,
   };

@@ -10,18 +10,26 @@ import { patchParts } from '../base/patch-parts.js';
 const FLIGHT_MS = 600;
 /** More snapshots of a client at a time are refused. */
 const SNAPSHOTS = 2;
+/** An answer that takes longer is late. */
+const LATE_MS = 1000;
 
 /**
  * All that the page asks of the server. Each promises the answer; undefined where `refused` was told why there is none.
+ * `late` is called when the first answer that the user waits for becomes late, and when none is late any more. Images,
+ * which take long to draw, and the list of scenes, which is read from a disk, are never late: the page asks for them by
+ * itself, or says elsewhere that it waits.
  *
  * @typedef {ReturnType<typeof commandsBy>} Commands
  *
- * @param {{ask: (message: ClientMessage) => Promise<*>, refused: (error: *) => void}} page
+ * @param {{ask: (message: ClientMessage) => Promise<*>, refused: (error: *) => void, late: (isLate: boolean) => void}} page
  */
-export function commandsBy({ ask, refused }) {
+export function commandsBy({ ask, refused, late }) {
+  const awaited = watched(ask, late);
+  /** @param {Promise<*>} answer */
+  const orRefused = (answer) => answer.catch((error) => void refused(error));
   /** @param {ClientMessage} message */
-  const tell = (message) => ask(message).catch((error) => void refused(error));
-  const changes = new Changes({ ask, refused });
+  const tell = (message) => orRefused(awaited(message));
+  const changes = new Changes({ ask: awaited, refused });
   const draw = atMost(SNAPSHOTS, ask);
   return {
     /** Together with what waits for an answer; see Changes. @param {StatePatch} patch */
@@ -52,7 +60,7 @@ export function commandsBy({ ask, refused }) {
     /** @param {Omit<ClientTree, 'type'>} query */
     tree: (query) => tell({ type: 'tree', ...query }),
     /** @param {{width: number, height: number}} size */
-    snapshot: (size) => draw({ type: 'snapshot', ...size, jpegQuality: 95 }).catch((error) => void refused(error)),
+    snapshot: (size) => orRefused(draw({ type: 'snapshot', ...size, jpegQuality: 95 })),
     /** @param {{name: string, camera?: ClientCue['camera']}} which */
     cue: (which) => tell({ type: 'cue', ...which }),
     /** What of a list of cues does not go with the scene. @param {object} cues @returns {Promise<ServerChecked|undefined>} */
@@ -61,11 +69,39 @@ export function commandsBy({ ask, refused }) {
     picture: (picture) => draw({ type: 'snapshot', ...picture }).catch(() => undefined),
     /** @param {'start'|'stop'} action */
     record: (action) => tell({ type: 'record', action }),
-    scenes: () => tell({ type: 'scenes' }),
+    scenes: () => orRefused(ask({ type: 'scenes' })),
     /** @param {string} page its address @returns {Promise<ServerShared|undefined>} */
     share: (page) => tell({ type: 'share', page }),
     /** @param {string} scene @param {ClientOpen['upAxis']} [upAxis] as chosen last if left out */
     open: (scene, upAxis) => tell({ type: 'open', scene, upAxis }),
+  };
+}
+
+/**
+ * Asks, and calls `late` with true when an answer becomes late, and with false when none is late any more.
+ *
+ * @param {(message: ClientMessage) => Promise<*>} ask
+ * @param {(isLate: boolean) => void} late
+ */
+function watched(ask, late) {
+  let count = 0;
+  /** @param {ClientMessage} message */
+  return async (message) => {
+    let isLate = false;
+    const timer = setTimeout(() => {
+      isLate = true;
+      count += 1;
+      if (count === 1) late(true);
+    }, LATE_MS);
+    try {
+      return await ask(message);
+    } finally {
+      clearTimeout(timer);
+      if (isLate) {
+        count -= 1;
+        if (count === 0) late(false);
+      }
+    }
   };
 }
 

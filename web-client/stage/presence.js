@@ -7,6 +7,7 @@ import { holderName, say } from '../base/texts.js';
 
 const CONNECTION = {
   open: 'presence.connected',
+  late: 'presence.late',
   starting: 'presence.connecting',
   connecting: 'presence.connecting',
   waiting: 'presence.notConnected',
@@ -17,17 +18,18 @@ const LEVEL = { moving: 'quality.moving', still: 'quality.still' };
 const HOLD_MS = 800;
 
 /**
- * What is always to be seen: the connection, who is in control (`own`, `other`, `absent` or `nobody`), and the
- * picture's kind.
+ * What is always to be seen: the connection, which is `late` while an answer is, who is in control (`own`, `other`,
+ * `absent` or `nobody`), and the picture's kind.
  *
- * @param {Pick<Now, 'phase'|'client'|'state'|'header'>} now
+ * @param {Pick<Now, 'phase'|'client'|'state'|'header'|'isLate'>} now
  */
-export function presence({ phase, client, state, header }) {
+export function presence({ phase, client, state, header, isLate }) {
   if (phase.name !== 'open') return { connection: phase.name };
   const { holder, absent } = state?.control ?? {};
   const others = absent ? 'absent' : 'other';
   const held = holder === client ? 'own' : others;
   const steering = holder ? held : 'nobody';
+  if (isLate) return { connection: 'late', steering };
   return { connection: 'open', steering, level: header?.quality?.level };
 }
 
@@ -82,7 +84,7 @@ export class Presence {
     this.#may = page.role === 'control' && ['other', 'absent'].includes(steering);
     const text = [
       say(CONNECTION[connection]),
-      steering && controlWords(steering, page.state),
+      connection === 'open' && controlWords(steering, page.state),
       level && say(LEVEL[level]),
     ].filter(Boolean).join(' · ');
     const title = this.#may ? say('presence.hint') : '';

@@ -132,8 +132,8 @@ export class Stage {
     });
     store.subscribe(({ hasPicture, language }) => [hasPicture, language], () => this.#showPhase());
     store.subscribe(
-      ({ phase, role, client, state, hasPicture, header, language }) =>
-        [phase, role, client, state?.control, hasPicture && header?.quality?.level, language],
+      ({ phase, role, client, state, hasPicture, header, isLate, language }) =>
+        [phase, role, client, state?.control, hasPicture && header?.quality?.level, isLate, language],
       () => {
         const { hasPicture, header, ...now } = store.now;
         presence.show({ ...now, header: hasPicture ? header : null });

@@ -3,6 +3,7 @@ import { readFileSync } from 'node:fs';
 import { after, before, describe, test } from 'node:test';
 import { assertClean } from './axe.js';
 import { pose } from './camera.js';
+import { HeldLink } from './held-link.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
@@ -295,3 +296,73 @@ for (const [name, size] of Object.entries(SIZES)) {
     });
   });
 }
+
+describe('cues on a link that pauses', { skip: browserIsMissing }, () => {
+  let server;
+  let link;
+  let browser;
+  let presenter;
+  let page;
+
+  before(async () => {
+    server = await Server.start();
+    link = await HeldLink.open(server.port);
+    browser = await launchBrowser();
+    presenter = await Tablet.open(browser, link.address, SIZES.tablet, { reducedMotion: 'reduce' });
+    ({ page } = presenter);
+    await presenter.shows((await presenter.wire.still()).frame);
+    await presenter.pictures(false);
+    const cues = Object.fromEntries(['Arrival', 'Green', 'Inside', 'Section'].map((name, order) => [name, { order, ms: 0 }]));
+    await presenter.say({ type: 'patch', patch: { cues } });
+    await page.locator('#bar').getByRole('button', { name: 'Cues' }).tap();
+  });
+
+  after(async () => {
+    await browser?.close();
+    link?.close();
+    await server?.stop();
+  });
+
+  const button = (name) => page.locator('#strip').getByRole('button', { name, exact: true });
+  const pill = (connection, words) => page.locator(`#presence[data-connection="${connection}"]`, { hasText: words }).waitFor();
+  let asked = 0;
+  /** Waits until the server has done all that it was sent. */
+  const answered = async () => {
+    asked += 1;
+    await presenter.say({ type: 'patch', patch: { cues: { Arrival: { ms: asked } } } });
+    await presenter.wire.until('the answers', () => presenter.wire.state.cues.Arrival.ms === asked);
+  };
+
+  /** Does it twice in a pause of the link: after the pause all see the cue of that name, and not the one after it. */
+  const twice = async (act, name) => {
+    link.hold();
+    await act();
+    await act();
+    await pill('late', 'Waiting for the server…');
+    await presenter.screenshot('cues-late');
+    link.release();
+    await pill('open', 'Connected');
+    await answered();
+    assert.equal(presenter.wire.state.cue.name, name);
+    await page.locator('#strip').getByRole('button', { name, exact: true, pressed: true }).waitFor();
+  };
+
+  test('a tap and another before the answer show the cue that was named, and the pill says that the page waits', async () => {
+    await button('Next: Arrival').tap();
+    await button('Next: Green').waitFor();
+    await twice(() => button('Next: Green').tap(), 'Green');
+    await button('Next: Inside').tap();
+    await button('Next: Section').waitFor();
+  });
+
+  test('so do a clicker, and the buttons for the next cue and the one before', async () => {
+    await twice(() => page.keyboard.press('PageUp'), 'Green');
+    await twice(() => page.keyboard.press('PageDown'), 'Inside');
+    await twice(() => button('Previous cue').tap(), 'Green');
+    await twice(() => button('Next cue').tap(), 'Inside');
+  });
+
+  test('in all this the browser had nothing to complain of', () => {
+    assert.deepEqual(presenter.complaints, []);
+  });
+});

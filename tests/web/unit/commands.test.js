@@ -1,17 +1,20 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { test } from 'node:test';
+import { afterEach, beforeEach, describe, test } from 'node:test';
 import Ajv from 'ajv/dist/2020.js';
 import { commandsBy } from '../../../web-client/connection/commands.js';
+import { FakeClock, replaceGlobals } from './fakes.js';
 
 const schema = JSON.parse(readFileSync(new URL('../../../protocol/protocol.schema.json', import.meta.url), 'utf8'));
 const ajv = new Ajv({ strict: true, strictRequired: false });
 ajv.addSchema(schema);
 const isClientMessage = ajv.compile({ $ref: `${schema.$id}#/$defs/clientMessage` });
 
+const settled = () => new Promise(setImmediate);
+
 test('each command is a message of the protocol', async () => {
   const asked = [];
-  const commands = commandsBy({ ask: async (message) => asked.push(message), refused: assert.fail });
+  const commands = commandsBy({ ask: async (message) => asked.push(message), refused: assert.fail, late: assert.fail });
   await commands.change({ camera: { fov: 50 } });
   await commands.patch({ nodes: null });
   await commands.control({ action: 'give', client: 'c2' });
@@ -39,11 +42,75 @@ test('each command is a message of the protocol', async () => {
 test('a command promises its answer, or nothing once its refusal is told', async () => {
   const refused = [];
   const answers = [async () => ({ type: 'ok' }), () => Promise.reject(new Error('no such scene'))];
-  const commands = commandsBy({ ask: () => answers.shift()(), refused: ({ message }) => refused.push(message) });
+  const commands = commandsBy({ ask: () => answers.shift()(), refused: ({ message }) => refused.push(message), late: assert.fail });
   assert.deepEqual(await commands.scenes(), { type: 'ok' });
   assert.deepEqual(refused, []);
   assert.equal(await commands.open('none'), undefined);
   assert.deepEqual(refused, ['no such scene']);
+});
+
+describe('an answer', () => {
+  let clock;
+  let restore;
+  let asked;
+  let calls;
+  let commands;
+
+  beforeEach(() => {
+    clock = new FakeClock();
+    restore = replaceGlobals({ setTimeout: clock.setTimeout, clearTimeout: clock.clearTimeout });
+    asked = [];
+    calls = [];
+    commands = commandsBy({
+      ask: ({ type }) => new Promise((resolve, reject) => { asked.push({ type, resolve, reject }); }),
+      refused: () => {}, late: (isLate) => calls.push(isLate),
+    });
+  });
+  afterEach(() => restore());
+
+  test('that the user waits for is late after a second, and no more once it is here', async () => {
+    commands.cue({ name: 'Arrival' });
+    clock.advance(999);
+    assert.deepEqual(calls, []);
+    clock.advance(1);
+    assert.deepEqual(calls, [true]);
+    asked[0].resolve({});
+    await settled();
+    assert.deepEqual(calls, [true, false]);
+  });
+
+  test('within a second is not late', async () => {
+    const taps = [commands.fit(), commands.change({ camera: { fov: 50 } })];
+    clock.advance(900);
+    for (const { resolve } of asked) resolve({});
+    await Promise.all(taps);
+    clock.advance(5000);
+    assert.deepEqual(calls, []);
+  });
+
+  test('of several that are late counts as one wait, until the last is here or lost with the connection', async () => {
+    commands.cue({ name: 'Arrival' });
+    clock.advance(600);
+    commands.change({ camera: { fov: 50 } });
+    clock.advance(600);
+    commands.tree({ only: 'hinges' });
+    clock.advance(600);
+    asked[0].resolve({});
+    await settled();
+    assert.deepEqual(calls, [true]);
+    for (const { reject } of asked) reject(new Error());
+    await settled();
+    clock.advance(5000);
+    assert.deepEqual(calls, [true, false]);
+  });
+
+  test('for which the page alone waits is never late: images, and the list of scenes', async () => {
+    commands.picture({ width: 10, height: 20 });
+    commands.snapshot({ width: 10, height: 20 });
+    commands.scenes();
+    clock.advance(60_000);
+    assert.deepEqual(calls, []);
+  });
 });
 
 test('a long patch goes in parts, the next one when the one before is done', async () => {
@@ -51,6 +118,7 @@ test('a long patch goes in parts, the next one when the one before is done', asy
   const commands = commandsBy({
     ask: async ({ patch }) => (asked.push(Object.keys(patch.cues)) === 2 ? Promise.reject(new Error('no')) : {}),
     refused: () => {},
+    late: assert.fail,
   });
   const text = 'x'.repeat(40_000);
   const cues = { a: { text }, b: { text }, c: { text } };
@@ -66,8 +134,8 @@ test('two pictures are on their way at a time, and the next follow in their orde
   const commands = commandsBy({
     ask: ({ width }) => new Promise((resolve, reject) => { asked.push({ width, resolve, reject }); }),
     refused: ({ message }) => refused.push(message),
+    late: assert.fail,
   });
-  const settled = () => new Promise(setImmediate);
   const widths = () => asked.map(({ width }) => width);
   const answers = [1, 2, 3, 4].map((width) => commands.picture({ width, height: 1 }));
   answers.push(commands.snapshot({ width: 5, height: 1 }));

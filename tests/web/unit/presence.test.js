@@ -52,7 +52,10 @@ test('all is said in a few words, for eyes and for scripts, and only when it cha
   assert.equal(element.writes, 1);
   corner.show(held({ holder: 'b', name: 'Eva’s iPad' }));
   assert.equal(element.text, 'Connected · Eva’s iPad is in control · Still');
-  corner.show({ phase: { name: 'waiting' } });
+  corner.show({ ...held({ holder: 'b' }), isLate: true });
+  assert.equal(element.text, 'Waiting for the server…');
+  assert.deepEqual(element.dataset, { connection: 'late', steering: 'other', level: '' });
+  corner.show({ phase: { name: 'waiting' }, isLate: true });
   assert.equal(element.text, 'Not connected');
   assert.deepEqual(element.dataset, { connection: 'waiting', steering: '', level: '' });
 });
@@ -77,13 +80,15 @@ describe('the pill', () => {
   };
 
   test('tapped asks for control, held takes it', () => {
-    const { press, done, element, restore } = setUp(held({ holder: 'b' }));
-    assert.equal(element.ariaDisabled, false);
-    press(300);
-    assert.deepEqual(done, ['ask']);
-    press(900);
-    assert.deepEqual(done, ['ask', 'take']);
-    restore();
+    for (const isLate of [false, true]) {
+      const { press, done, element, restore } = setUp({ ...held({ holder: 'b' }), isLate });
+      assert.equal(element.ariaDisabled, false);
+      press(300);
+      assert.deepEqual(done, ['ask']);
+      press(900);
+      assert.deepEqual(done, ['ask', 'take']);
+      restore();
+    }
   });
 
   test('does nothing for who has control, and for who only watches', () => {

@@ -50,6 +50,7 @@ export const cs = {
   'page.reload': 'Načíst stránku znovu',
 
   'presence.connected': 'Připojeno',
+  'presence.late': 'Čeká se na server…',
   'presence.connecting': 'Připojování',
   'presence.notConnected': 'Nepřipojeno',
   'presence.refused': 'Přístup odmítnut',

@@ -53,6 +53,7 @@ export const en = {
   'page.reload': 'Reload the page',
 
   'presence.connected': 'Connected',
+  'presence.late': 'Waiting for the server…',
   'presence.connecting': 'Connecting',
   'presence.notConnected': 'Not connected',
   'presence.refused': 'Refused',
