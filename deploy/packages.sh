@@ -25,9 +25,9 @@ RUN_PACKAGES=(
 # To start several servers and edges on one machine (several.sh).
 # shellcheck disable=SC2034
 SEVERAL_PACKAGES=(nats-server:nats-server haproxy:haproxy curl:curl)
-# To make the Debian packages (cpack), and of them a container's root (container.sh).
+# To make the Debian packages (cpack).
 # shellcheck disable=SC2034
-PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file mmdebstrap:mmdebstrap)
+PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file)
 # To test: doctest, a browser and what steers it, and what checks the source's format, the shaders and the manual pages.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
@@ -39,7 +39,7 @@ TEST_PACKAGES=(
 # shellcheck disable=SC2034
 ALL_TEST_PACKAGES=(
     firefox-esr:firefox-esr gnuplot-nox:gnuplot python3-websockets curl:curl haproxy:haproxy nats-server:nats-server openssl:openssl
-    bubblewrap:bwrap doxygen:doxygen lintian:lintian
+    bubblewrap:bwrap mmdebstrap:mmdebstrap doxygen:doxygen lintian:lintian
     clang-14:clang++-14 libclang-rt-14-dev clang-tidy-14:clang-tidy-14
 )
 

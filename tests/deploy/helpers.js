@@ -72,13 +72,6 @@ function debs(folder) {
   return Object.fromEntries(made.map((name) => [name.split('_')[0], path.join(folder, name)]));
 }
 
-/** A function that tells what the Containerfile's instructions of a name say. */
-function containerfile() {
-  const text = fs.readFileSync(path.join(DEPLOY, 'Containerfile'), 'utf8').replace(/\\\n\s*/g, '').replace(/^#.*\n/gm, '');
-  const instructions = text.trim().split(/\n+/).map((line) => /^([A-Z]+) (.*)$/.exec(line).slice(1));
-  return (name) => instructions.filter(([instruction]) => instruction === name).map(([, words]) => words);
-}
-
 /** Why no sandbox can be made here, or false. */
 const cannotSandbox = (...commands) => missing('bwrap', ...commands) ||
   (spawnSync('bwrap', ['--unshare-user', '--unshare-pid', '--ro-bind', '/', '/', '--dev', '/dev', '--proc', '/proc', '/bin/true']).status === 0
@@ -203,4 +196,4 @@ class Client {
   }
 }
 
-module.exports = { Client, DEPLOY, Running, TOKENS, cannotSandbox, containerfile, debs, eventually, files, freePort, linkedLibraries, makeCertificate, missing, output, packagesOf, temporaryFolder, tokenFile };
+module.exports = { Client, DEPLOY, Running, TOKENS, cannotSandbox, debs, eventually, files, freePort, linkedLibraries, makeCertificate, missing, output, packagesOf, temporaryFolder, tokenFile };
