@@ -19,7 +19,7 @@ export function withoutComments(file, text) {
 export function programsIn(file, text, known) {
   const code = withoutComments(file, text), found = new Set();
   for (const [, name] of code.matchAll(/\/usr\/(?:local\/)?s?bin\/([\w.+-]+)/g)) found.add(name);
-  for (const [, name] of code.matchAll(/\b(?:spawn|spawnSync|execFile|execFileSync)\(\s*['"]([\w.+-]+)['"]/g)) found.add(name);
+  for (const [, name] of code.matchAll(/\b(?:spawn|spawnSync|execFile|execFileSync|output|Running)\(\s*['"]([\w.+-]+)['"]/g)) found.add(name);
   for (const name of known) {
     const word = name.replace(/[.+]/g, '\\$&');
     const started = /\.sh$/.test(file) ? `(?:^|[|;&(]|then|do|exec|command -v)\\s*${word}(?=\\s|$)` : `['"\`]${word}(?:['"\`]|\\s)`;

@@ -7,7 +7,8 @@ const fs = require('node:fs');
 const path = require('node:path');
 const { before, test } = require('node:test');
 const { environmentOf, makeRoot, stages, wordsOf } = require('./containerfile.js');
-const { Running, cannotSandbox, debs, output, temporaryFolder } = require('./helpers.js');
+const { Running, debs, output, temporaryFolder } = require('./helpers.js');
+const { cannotSandbox } = require('./sandbox.js');
 
 const START_LIMIT_MS = 180_000;  // the whole car, drawn in software, and no shader is compiled yet
 

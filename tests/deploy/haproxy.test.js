@@ -11,7 +11,8 @@ const tls = require('node:tls');
 const { once } = require('node:events');
 const { after, before, describe, test } = require('node:test');
 const { WebSocketServer } = require('../web/node_modules/ws');
-const { Client, DEPLOY, Running, TOKENS, eventually, freePort, makeCertificate, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
+const { Client, DEPLOY, Running, TOKENS, eventually, freePort, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
+const { makeCertificate } = require('./certificate.js');
 
 const { VRUT_PREVIEW, VRUT_CAR, VRUT_EXAMPLE_HOST } = process.env;
 const folder = temporaryFolder();

@@ -51,16 +51,6 @@ function output(command, args, options = {}) {
   return stdout + stderr;
 }
 
-/** Writes certificate.pem of localhost, key.pem, and both.pem, which has the two, into a folder. */
-function makeCertificate(folder) {
-  const file = (name) => path.join(folder, name);
-  output('openssl', [
-    'req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '2', '-subj', '/CN=localhost',
-    '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1', '-keyout', file('key.pem'), '-out', file('certificate.pem'),
-  ]);
-  fs.writeFileSync(file('both.pem'), fs.readFileSync(file('certificate.pem')) + fs.readFileSync(file('key.pem'), 'utf8'));
-}
-
 /** Files below a folder, by their paths in it. */
 const files = (top) => fs.readdirSync(top, { recursive: true, withFileTypes: true })
   .filter((entry) => !entry.isDirectory()).map((entry) => path.relative(top, path.join(entry.parentPath ?? entry.path, entry.name))).sort();
@@ -71,11 +61,6 @@ function debs(folder) {
   const made = fs.readdirSync(folder).filter((name) => name.endsWith('.deb'));
   return Object.fromEntries(made.map((name) => [name.split('_')[0], path.join(folder, name)]));
 }
-
-/** Why no sandbox can be made here, or false. */
-const cannotSandbox = (...commands) => missing('bwrap', ...commands) ||
-  (spawnSync('bwrap', ['--unshare-user', '--unshare-pid', '--ro-bind', '/', '/', '--dev', '/dev', '--proc', '/proc', '/bin/true']).status === 0
-    ? false : 'bwrap may not make namespaces here');
 
 /** The libraries that a program itself is linked with. */
 function linkedLibraries(program) {
@@ -196,4 +181,4 @@ class Client {
   }
 }
 
-module.exports = { Client, DEPLOY, Running, TOKENS, cannotSandbox, debs, eventually, files, freePort, linkedLibraries, makeCertificate, missing, output, packagesOf, temporaryFolder, tokenFile };
+module.exports = { Client, DEPLOY, Running, TOKENS, debs, eventually, files, freePort, linkedLibraries, missing, output, packagesOf, temporaryFolder, tokenFile };

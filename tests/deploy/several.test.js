@@ -6,7 +6,8 @@ const fs = require('node:fs');
 const path = require('node:path');
 const { spawnSync } = require('node:child_process');
 const { after, describe, test } = require('node:test');
-const { DEPLOY, Running, eventually, freePort, makeCertificate, missing, output, temporaryFolder } = require('./helpers.js');
+const { DEPLOY, Running, eventually, freePort, missing, output, temporaryFolder } = require('./helpers.js');
+const { makeCertificate } = require('./certificate.js');
 
 const { VRUT_PREVIEW, VRUT_CAR } = process.env;
 const AGAIN_WITHIN_MS = 10_000;

@@ -5,7 +5,8 @@ const { spawnSync } = require('node:child_process');
 const fs = require('node:fs');
 const path = require('node:path');
 const { before, test } = require('node:test');
-const { Client, Running, TOKENS, cannotSandbox, eventually, freePort, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
+const { Client, Running, TOKENS, eventually, freePort, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
+const { cannotSandbox } = require('./sandbox.js');
 
 const { VRUT_BUILD, VRUT_CAR, VRUT_CMAKE } = process.env;
 const WORST_SCORE = 2.0;

@@ -89,7 +89,7 @@ struct SceneFolder {
 }  // namespace
 
 TEST_CASE("of files, those of the scene's folder are open, and for reading only" *
-          Needs{kernel_has_landlock(), "Landlock"}) {
+          Needs(kernel_has_landlock(), "Landlock")) {
     const SceneFolder scene;
     fs::create_symlink(scene.beside, scene.file.parent_path() / "link.mtl");
     fs::create_directory_symlink(scene.folder.path(), scene.file.parent_path() / "up");
@@ -109,7 +109,7 @@ TEST_CASE("of files, those of the scene's folder are open, and for reading only"
           }) == EACCES);
 }
 
-TEST_CASE("folders of textures are open, and for reading only" * Needs{kernel_has_landlock(), "Landlock"}) {
+TEST_CASE("folders of textures are open, and for reading only" * Needs(kernel_has_landlock(), "Landlock")) {
     const SceneFolder scene;
     const fs::path maps = fs::path(scene.folder.write("maps/a.png", "no picture")).parent_path();
     const auto with_maps = [&](const fs::path& path, int how) {
@@ -125,7 +125,7 @@ TEST_CASE("folders of textures are open, and for reading only" * Needs{kernel_ha
 }
 
 TEST_CASE("a scene that somebody names by a link is open, and what lies beside the link" *
-          Needs{kernel_has_landlock(), "Landlock"}) {
+          Needs(kernel_has_landlock(), "Landlock")) {
     const SceneFolder scene;
     const fs::path named = scene.folder.path() / "named/car.obj";
     fs::create_directories(named.parent_path());

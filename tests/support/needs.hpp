@@ -4,9 +4,11 @@
 
 #include <cstdio>
 
-/// Of a test case that not every machine can run: `* Needs{is_there, "Landlock of Linux 5.13"}`. Without it
-/// the case is skipped, which a line says.
+/// Of a test case that not every machine can run: `* Needs(is_there, "Landlock")`. Without it the case is
+/// skipped, and a line says so.
 struct Needs {
+    Needs(bool there, const char* name) : is_there(there), what(name) {}
+
     bool is_there;
     const char* what;
 
