@@ -68,7 +68,7 @@ inline constexpr double kWheelSteps[] = {100, 3, 1.0 / 3};
 /// bit-identical camera. What was touched at the start stays under the pointer, or between two fingers, while
 /// they pan and zoom; where nothing is, that is the point at the focus' depth. Where drags look around, what
 /// is in the middle of the view follows the pointer. A move (`button` is -1) may be replaced by a later one
-/// of the same pointer with the same buttons if nothing else came between.
+/// of the same pointer with the same buttons if nothing else came between, and if both have the same context.
 class Gestures {
 public:
     struct HeldKey {

@@ -6,11 +6,14 @@ namespace {
 
 using protocol::Pointer;
 
-/// A move that only says where the pointer is now: no button went down or up with it.
+/// A move that only says where the pointer is now: no button went down or up with it, and it does not say
+/// what a drag that begins is about.
 const Pointer* plain_move(const MessageReceived& received) {
     if (!received.message || !received.may_steer) return nullptr;
     const auto* pointer = std::get_if<Pointer>(&received.message->payload);
-    return pointer && pointer->event == Pointer::Event::move && pointer->button == -1 ? pointer : nullptr;
+    const bool is_plain =
+        pointer && pointer->event == Pointer::Event::move && pointer->button == -1 && !pointer->touched;
+    return is_plain ? pointer : nullptr;
 }
 
 /// Lets `next` take the place of `before`, an earlier move of the same pointer.

@@ -111,8 +111,8 @@ using EngineEvent = std::variant<ClientJoined, ClientLeft, MessageReceived, Fram
                                  FrameEncoded, PictureFailed, PictureAsked, scenes::SceneLoading,
                                  scenes::SceneLoaded, FileWorkDone, FollowFrom, Follow, TakeOver>;
 
-/// The one way into the render thread. Of a client's moves that come one after the other the last of each
-/// pointer is kept, and of what it wants the newest; nothing else is merged or dropped.
+/// The one way into the render thread. Of a client's moves without `touched` that come one after the other
+/// the last of each pointer is kept, and of what it wants the newest; nothing else is merged or dropped.
 class Mailbox {
 public:
     void push(EngineEvent event);
