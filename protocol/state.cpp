@@ -434,6 +434,13 @@ const Json& StateDocument::section(std::string_view name) const {
     return found == sections_.end() ? none : (*found)->json;
 }
 
+std::optional<std::string> StateDocument::holder() const {
+    const Json& control = section("control");
+    const auto holder = control.is_object() ? control.find("holder") : control.end();
+    return holder != control.end() && holder->is_string() ? std::optional(holder->get<std::string>())
+                                                          : std::nullopt;
+}
+
 bool StateDocument::has_scene_of(const StateDocument& other) const {
     const Json &own = section("scene"), &others = other.section("scene");
     return &own == &others || own == others;

@@ -428,6 +428,8 @@ public:
     nlohmann::json json() const;
     /// A member of the document; null where there is none.
     const nlohmann::json& section(std::string_view name) const;
+    /// Who holds control; none: nobody.
+    std::optional<std::string> holder() const;
     /// The `patch` message that leads from an earlier document to this one; `by` may be empty.
     std::string encode_patch_from(const StateDocument& earlier, const std::string& by) const;
     /// Of the same scene: else the difference may be as large as the document, and that is sent.

@@ -228,7 +228,8 @@ void add_network(Command& command, NetworkArguments& arguments) {
                       "with other devices, with certificates of an authority that is made once and kept.")
             ->group(kNetwork);
     add_certificate(command, arguments)->excludes(lan);
-    add_number(command, "--max-clients", arguments.max_clients, 1, 10000, "Accept N clients at a time")
+    add_number(command, "--max-clients", arguments.max_clients, 1, 10000,
+               "Accept N clients at a time, and 16 more that are hosts or present")
         ->capture_default_str()
         ->group(kNetwork);
     add_token_file(command, arguments);

@@ -255,7 +255,7 @@ void Connection::on_hello(const protocol::Hello& hello, std::optional<std::int64
 
 void Connection::join(const std::string& client, protocol::Role role, const protocol::Hello& hello,
                       std::optional<std::int64_t> id) {
-    if (registry_.clients() >= registry_.max_clients)
+    if (!registry_.has_place_for(role, hello, *room_))
         return reject_and_close(
             {id, protocol::error_code::too_many,
              "the server has its " + std::to_string(registry_.max_clients) + " clients already"},
@@ -264,6 +264,7 @@ void Connection::join(const std::string& client, protocol::Role role, const prot
     hello_deadline_.cancel();
     role_ = role;
     client_ = client;
+    resume_key_ = hello.resume;
     wants_depth_ = hello.depth;
     room_->clients[client_] = shared_from_this();
     if (!room_->loads) loading_ = room_->loading;  // over before it came

@@ -50,6 +50,8 @@ public:
     /// Bytes that wait for this client alone; of a picture that several share, its part.
     std::size_t backlog() const;
     bool is_dropped() const { return dropped_; }
+    /// That it gave in `hello`.
+    const std::string& resume_key() const { return resume_key_; }
     /// Ends the connection at once; `reason` is of kCloseReasons.
     void drop(const char* reason);
     /// Ends the connection after what is being sent.
@@ -110,7 +112,8 @@ private:
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, deadline_timer_, rate_timer_, flow_timer_;
     ConnectionLimit::Place place_;
-    std::string client_;       // empty until it has joined
+    std::string client_;  // empty until it has joined
+    std::string resume_key_;
     bool is_joining_ = false;  // its hello is not answered yet
     protocol::Role role_ = protocol::Role::view;
     std::string peer_;

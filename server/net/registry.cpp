@@ -39,6 +39,17 @@ std::size_t ConnectionRegistry::clients() const {
     return clients;
 }
 
+bool ConnectionRegistry::has_place_for(protocol::Role role, const protocol::Hello& hello,
+                                       const ServedRoom& room) const {
+    const bool controls = role == protocol::Role::control;
+    std::size_t places = max_clients;
+    // Where no token is asked for, a whole audience may have this role: then nobody sends one.
+    if (role == protocol::Role::host || (controls && !hello.token.empty())) places += kReservedPlaces;
+    if (controls && !hello.resume.empty() && hello.resume == room.holder_key)
+        places = max_clients + kReservedPlaces + kPlacesToResume;
+    return clients() < places;
+}
+
 void ServedRoom::take(engine::EngineOutput output) {
     const auto find = [&](const std::string& client) {
         const auto found = clients.find(client);
@@ -51,6 +62,10 @@ void ServedRoom::take(engine::EngineOutput output) {
         present_frame = 0;
     }
     if (output.document) {
+        // Of a holder who is gone the key stays.
+        const auto holder = output.document->holder();
+        const auto connection = holder ? find(*holder) : nullptr;
+        if (connection || !holder) holder_key = connection ? connection->resume_key() : "";
         const auto for_hosts = output.document->for_hosts();
         host_document.set(for_hosts ? for_hosts : output.document, output.by, output.by_since);
         document.set(std::move(output.document), std::move(output.by), output.by_since);

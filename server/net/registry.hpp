@@ -41,11 +41,16 @@ struct ServedRoom {
     engine::PictureSize size;                           ///< of a picture of the view
     ViewPictures pictures;
     std::map<std::string, std::shared_ptr<Connection>> clients;  ///< those that said hello
+    std::string holder_key;  ///< by which control is resumed; empty: it is not, or not known here
 
     // What its engine says.
     void take(engine::EngineOutput output);
     void take(std::shared_ptr<const engine::EncodedPicture> picture);
 };
+
+/// Places for clients beyond max_clients, which the audience cannot take: so many for hosts and for who has
+/// the control token, and the others for who resumes control.
+inline constexpr std::size_t kReservedPlaces = 12, kPlacesToResume = 4;
 
 /// State shared by all connections. On the net thread only, except the metrics.
 struct ConnectionRegistry {
@@ -73,6 +78,8 @@ struct ConnectionRegistry {
     bool has_rooms() const { return open_room || !rooms.empty(); }
     /// Those that said hello, of all rooms.
     std::size_t clients() const;
+    /// Whether there is a place for a client of this role, which `hello` asks for.
+    bool has_place_for(protocol::Role role, const protocol::Hello& hello, const ServedRoom& room) const;
 };
 
 /// Cuts the clients for whom the most waits, while more waits for all than the server keeps.

@@ -170,6 +170,7 @@ TEST_CASE("a late client's first frame tells of no old input") {
 TEST_CASE("each end of a connection is counted with its reason") {
     ServerOptions options;
     options.access.control_token = "control-token-16";
+    options.access.view_token = "view-token-16-xx";
     options.max_clients = 1;
     TestServer server({}, options);
     const auto ended = [&](const char* reason) {
@@ -204,7 +205,9 @@ TEST_CASE("each end of a connection is counted with its reason") {
         TestClient only(server.port());
         only.send(hello);
         only.wait_for("welcome");
-        expect_close("too-many", [&](TestClient& client) { client.send(hello); });
+        expect_close("too-many", [](TestClient& client) {
+            client.send({{"type", "hello"}, {"role", "view"}, {"token", "view-token-16-xx"}});
+        });
     }
     CHECK(ended("gone"));
 }

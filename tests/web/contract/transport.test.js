@@ -244,6 +244,23 @@ describe('ends of a connection', () => {
     for (const client of clients) assert.equal((await client.ended()).code, 1001);
     assert.equal(await status, 0);
   });
+
+  test('hosts and who resumes control come in, though the server has its clients', async (t) => {
+    const small = await Server.start({ options: ['--max-clients', '2'] });
+    t.after(() => small.stop());
+    const come = (hello) => ContractClient.join(t, small, hello);
+    const presenter = await come({ resume: 'a secret' });
+    const watcher = await come({ role: 'view' });
+    presenter.socket.terminate();
+    await watcher.until('absence', () => watcher.state.control.absent);
+    await come({ role: 'view' });
+    const third = await ContractClient.connect(small);
+    third.socket.send('{"type":"hello","role":"view"}');
+    assert.equal((await third.ended()).code, 1013);
+    const back = await come({ resume: 'a secret' });
+    await back.until('control', () => back.isHolder);
+    await come({ role: 'host' });
+  });
 });
 
 schemaTest(server);
