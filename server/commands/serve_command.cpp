@@ -128,7 +128,7 @@ void serve_command(const ServeArguments& arguments) {
     const std::string& name = options.library.start_name();
     auto scene = scenes::load_kept_scene(path, name, observe::loading_bar(name), options.library.options());
     if (!scene) throw std::runtime_error(scene.error());
-    options.keep_changes = scenes::store_changes;
+    options.keep_changes = {scenes::store_changes, scenes::set_changes_aside};
     const scene::Scene& read = *scene->placed->scene;
     for (const protocol::Notice& notice : scene->notices)
         observe::log_warning("notice", {{"scene", name}, {"text", notice.message}});

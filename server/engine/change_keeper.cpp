@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <condition_variable>
 #include <exception>
+#include <set>
+
+#include "engine/log_file.hpp"
 
 namespace vrut::server::engine {
 
@@ -21,14 +24,38 @@ struct ChangeKeeper::Writer {
     std::condition_variable done;
     bool running = false;
 
-    /// Returns why not.
-    std::optional<std::string> write(const std::string& scene, const std::string& patch) {
+    std::map<std::string, std::string> unusable;  // texts by scene
+    std::set<std::string> looked_at;              // scenes: what is kept of them can be written over
+
+    Result write(const std::string& scene, const std::optional<std::string>& patch) {
+        Result result;
         try {
-            store(scene, patch);
-            return std::nullopt;
+            result.set_aside = set_aside(scene);
+            if (patch) store.write(scene, *patch);
         } catch (const std::exception& error) {
-            return error.what();
+            result.why_not = error.what();
         }
+        return result;
+    }
+    /// Of a scene that was not looked at, too, since another server may have shown it until now.
+    std::string set_aside(const std::string& scene) {
+        std::string text;
+        {
+            const std::lock_guard lock(mutex);
+            if (looked_at.contains(scene)) return {};
+            text = unusable[scene];
+        }
+        std::string file = store.set_aside(scene, text, iso_time_now());
+        const std::lock_guard lock(mutex);
+        if (unusable[scene] != text) return file;  // it has been found unusable since, and is the next one's
+        looked_at.insert(scene);
+        unusable.erase(scene);
+        return file;
+    }
+    void add_unusable(const std::string& scene, const std::string& text) {
+        const std::lock_guard lock(mutex);
+        looked_at.erase(scene);
+        unusable[scene] = text;
     }
     void run(bool runs) {
         const std::lock_guard lock(mutex);
@@ -41,9 +68,9 @@ struct ChangeKeeper::Writer {
     }
 };
 
-ChangeKeeper::ChangeKeeper(Store store, std::shared_ptr<ResultPost> post, OnFailed on_failed)
-    : post_(std::move(post)), on_failed_(std::move(on_failed)) {
-    if (!store) return;
+ChangeKeeper::ChangeKeeper(Store store, std::shared_ptr<ResultPost> post, Events events)
+    : post_(std::move(post)), events_(std::move(events)) {
+    if (!store.write) return;
     writer_ = std::make_shared<Writer>();
     writer_->store = std::move(store);
 }
@@ -74,6 +101,14 @@ void ChangeKeeper::keep(const std::string& scene, std::string patch) {
     if (!writes_) write_next();
 }
 
+void ChangeKeeper::set_aside(const std::string& scene, const std::string& unusable) {
+    if (!writer_) return;
+    kept_at_ = base::Clock::now();
+    writer_->add_unusable(scene, unusable);
+    waiting_.try_emplace(scene);
+    if (!writes_) write_next();
+}
+
 std::optional<std::string> ChangeKeeper::newest(const std::string& scene) const {
     for (const auto& [name, patch] : newest_)
         if (name == scene) return patch;
@@ -86,22 +121,23 @@ void ChangeKeeper::write_next() {
     writer_->run(true);
     writes_ =
         run_file_work([this, writer = writer_, post = post_, scene = next.key(), patch = next.mapped()] {
-            const std::optional<std::string> why_not = writer->write(scene, patch);
+            const Result result = writer->write(scene, patch);
             writer->run(false);
-            post->send([this, why_not] {
+            post->send([this, result] {
                 writes_ = false;
-                report(why_not);
+                report(result);
                 write_next();
             });
         });
     if (writes_) return;
     writer_->run(false);
-    report("no thread can be had");
+    report({{}, "no thread can be had"});
 }
 
-void ChangeKeeper::report(const std::optional<std::string>& why_not) {
-    if (why_not && !failed_) on_failed_(*why_not);
-    failed_ = why_not.has_value();
+void ChangeKeeper::report(const Result& result) {
+    if (!result.set_aside.empty()) events_.set_aside(result.set_aside);
+    if (result.why_not && result.why_not != failed_) events_.failed(*result.why_not);
+    failed_ = result.why_not;
 }
 
 }  // namespace vrut::server::engine

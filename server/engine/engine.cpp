@@ -80,9 +80,13 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
                   {}),
       change_keeper_(
           std::move(options.keep_changes), file_results_,
-          [this](const std::string& why) {
-              notice({protocol::notice_code::not_kept, "Views, markers and parts cannot be kept: " + why});
-          }),
+          {[this](const std::string& why) {
+               notice({protocol::notice_code::not_kept, "Views, markers and parts cannot be kept: " + why});
+           },
+           [this](const std::string& file) {
+               notice({protocol::notice_code::unusable_changes,
+                       "What was kept and cannot be used is set aside as " + file});
+           }}),
       encoder_(
           metrics,
           [this](std::shared_ptr<const EncodedPicture> picture) {
@@ -172,6 +176,7 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     read_levels(scene);
     room_.emplace(prepared(scene), shared_ ? room::RoomOptions{} : live_options());
     note_kept();
+    set_changes_aside();
     try {
         while (renderer_.upload_step && !renderer_.upload_step(room_->visible())) {
         }

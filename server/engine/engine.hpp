@@ -156,6 +156,7 @@ private:
     void check_changes();
     void keep_changes();
     void note_kept();
+    void set_changes_aside();
     double ms_since_start() const {
         return std::chrono::duration<double, std::milli>(base::Clock::now() - start_).count();
     }
@@ -227,6 +228,7 @@ private:
     std::uint64_t sequence_ = 0;                      ///< of the message in hand; 0: none
     std::deque<room::Answer> followed_answers_;       ///< the newest
     std::deque<room::PictureOrder> followed_orders_;  ///< likewise
+    std::vector<protocol::Notice> held_notices_;      ///< of this server, until it draws the room
     std::size_t lines_ = 0;                           ///< since the last checkpoint
     base::Clock::time_point line_at_;                 ///< the last one
     Mailbox mailbox_;

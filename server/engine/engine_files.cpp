@@ -54,6 +54,12 @@ void Engine::keep_changes() {
     note_kept();
 }
 
+/// What is kept of the scene that is shown, if it cannot be used.
+void Engine::set_changes_aside() {
+    if (const auto unusable = room_->unusable_changes())
+        change_keeper_.set_aside(room_->changes_key(), *unusable);
+}
+
 /// What stands now is kept already.
 void Engine::note_kept() { kept_ = room_->state(); }
 

@@ -92,6 +92,7 @@ void Engine::handle(const TakeOver& take_over) {
     line_at_ = now - kJournalQuiet;
     follows_ = false;
     keep_checkpoint();
+    for (const protocol::Notice& notice : std::exchange(held_notices_, {})) room_->notice(notice);
     take_over.done();
 }
 

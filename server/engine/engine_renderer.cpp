@@ -95,9 +95,13 @@ void Engine::show(const scenes::SceneLoaded& loaded, std::optional<std::string> 
         keep_changes();
         scenes::LoadedScene scene = prepared(*loaded.scene);
         // What was read may be older.
-        if (const auto newer = change_keeper_.newest(scene.changes_key())) scene.changes = *newer;
+        if (const auto newer = change_keeper_.newest(scene.changes_key())) {
+            scene.changes = *newer;
+            scene.changes_fault.reset();
+        }
         room_->show(std::move(scene), time_of(base::Clock::now()));
         note_kept();
+        set_changes_aside();
         use(loaded.levels);
         pixel_budget_ = limits_;
         last_change_ = base::Clock::now();
@@ -141,6 +145,8 @@ void Engine::reject(const std::string& client, std::optional<std::int64_t> id, c
 
 void Engine::notice(const protocol::Notice& notice) {
     observe::log_warning("notice", {{"code", notice.code}, {"text", notice.message}});
+    // Those of a room that another server draws come from that one.
+    if (follows_) return held_notices_.push_back(notice);
     room_->notice(notice);
 }
 

@@ -281,10 +281,15 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
 }
 
 void Room::lay_changes() {
-    if (loaded_.changes.empty()) return;
-    if (const auto error = use_changes())
+    if (!loaded_.changes_fault && !loaded_.changes.empty())
+        if (const auto error = use_changes()) loaded_.changes_fault = error->message;
+    if (loaded_.changes_fault)
         add_notice({protocol::notice_code::unusable_changes,
-                    "What was kept of " + loaded_.name + " cannot be used: " + error->message});
+                    "What was kept of " + loaded_.name + " cannot be used: " + *loaded_.changes_fault});
+}
+
+std::optional<std::string> Room::unusable_changes() const {
+    return loaded_.changes_fault ? std::optional(loaded_.changes) : std::nullopt;
 }
 
 std::string Room::changes() const { return protocol::kept_changes(starting_, state_); }

@@ -121,6 +121,8 @@ public:
     /// what name.
     std::string changes() const;
     std::string changes_key() const { return loaded_.changes_key(); }
+    /// What was kept of the scene, if it cannot be used: an empty text if it cannot even be read.
+    std::optional<std::string> unusable_changes() const;
 
     /// The document of the present state. Changes since the last call become one revision, made by
     /// `changed_by`.

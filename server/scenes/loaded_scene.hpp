@@ -20,6 +20,8 @@ struct LoadedScene {
     std::vector<protocol::Notice> notices;
     /// A patch of the state that is laid over what the file says (stored_changes()); empty: none.
     std::string changes = {};
+    /// Why those that are kept cannot be used, in words that end a sentence; none: they can.
+    std::optional<std::string> changes_fault = {};
     std::shared_ptr<const mesh::PickingTrees> picking_trees = {};  ///< null: picks take longer
     std::optional<protocol::UpAxis> up_axis = {};  ///< in use, if the format does not define it
 

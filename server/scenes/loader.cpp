@@ -87,7 +87,10 @@ tl::expected<LoadedScene, std::string> load_kept_scene(const std::filesystem::pa
     auto scene = load_scene(path, name, progress, options);
     if (!scene) return scene;
     if (chosen) store_up_axis(scene->sha256, *chosen);
-    scene->changes = stored_changes(scene->changes_key());
+    if (auto changes = stored_changes(scene->changes_key()))
+        scene->changes = *std::move(changes);
+    else
+        scene->changes_fault = std::move(changes.error());
     return scene;
 }
 

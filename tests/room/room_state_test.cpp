@@ -443,7 +443,26 @@ TEST_CASE("what is kept and cannot be used: nothing of it counts, and a notice s
         CHECK(notices[0]["code"] == "unusable-changes");
         CHECK(contains(notices[0]["message"], "stage.vrut cannot be used"));
         CHECK(contains(notices[0]["message"], culprit));
+        CHECK(stage.room.unusable_changes() == changes);
     }
+}
+
+TEST_CASE("what is kept and cannot be read is named in a notice, and nothing else is") {
+    LoadedScene scene = first_scene();
+    CHECK_FALSE(Stage("a", scene).room.unusable_changes());
+    CHECK_FALSE(Stage("a", with_changes(scene, R"({"unit":{"metres":1}})")).room.unusable_changes());
+    scene.changes_fault = "it is too large";
+    Stage stage("a", scene);
+    CHECK(stage.room.unusable_changes() == "");
+    CHECK(stage.state()["notices"] ==
+          json::array({{{"code", "unusable-changes"},
+                        {"message", "What was kept of stage.vrut cannot be used: it is too large"}}}));
+    Stage later("a");
+    later.room.show(scene, later.now);
+    CHECK(later.room.unusable_changes() == "");
+    CHECK(later.state()["notices"] == stage.state()["notices"]);
+    later.room.show(first_scene(), later.now);
+    CHECK_FALSE(later.room.unusable_changes());
 }
 
 TEST_CASE("a pick names one of the last 64 frames") {

@@ -135,6 +135,65 @@ describe('what is kept of a scene', () => {
     assert.deepEqual(Object.keys(second.client.state.markers), ['lying']);
   });
 
+  const many = (count, entry) => Object.fromEntries(Array.from({ length: count }, (_, i) => [`n${i}`, entry]));
+  const unusable = {
+    'cut off': (text) => text.slice(0, -20),
+    'empty': () => '',
+    'no text': () => Buffer.from([0xff, 0xfe, 0x00, 0x7b]),
+    'of a newer version': (text) => text.replace(/^\{/, '{"sketches":{},'),
+    'of a version with more cues': (text) => JSON.stringify({ ...JSON.parse(text), cues: many(101, { text: 'x' }) }),
+    'of a version with more notes': (text) => JSON.stringify({ ...JSON.parse(text), markers: many(257, { point: [0, 0, 0] }) }),
+    'of another type': (text) => text.replace(/"fov":[\d.]+/, '"fov":"wide"'),
+    'of another scene': (text) => text.replace('"4":', '"400":'),
+  };
+  const isSetAside = (name) => /^[0-9a-f]{64}\.json\.unreadable-\d{4}-\d\d-\d\dT\d\d-\d\d-\d\dZ$/.test(name);
+  const noticed = (client, name) => client.until(`a notice of ${name}`, () =>
+    client.state.notices.some(({ code, message }) => code === 'unusable-changes' && message.includes(name)), 10000);
+
+  for (const [how, spoilt] of Object.entries(unusable)) {
+    test(`and cannot be used, as it is ${how}, is set aside and never written over`, async (t) => {
+      const state = temporaryFolder();
+      const first = await start(t, state);
+      const file = kept(first.client.state);
+      await first.client.patch(CHANGES);
+      await first.server.stop();
+      const [name] = files(state);
+      const inFolder = (other) => path.join(state, 'vrut-preview/scenes', other);
+      const bytes = Buffer.from(spoilt(readFileSync(inFolder(name), 'utf8')));
+      writeFileSync(inFolder(name), bytes);
+
+      const second = await start(t, state);
+      assert.deepEqual(kept(second.client.state), file);
+      await second.client.until('the file is set aside', () => files(state).every(isSetAside), 10000);
+      const [aside] = files(state);
+      await noticed(second.client, aside);
+      await noticed(second.client, 'stage.vrut cannot be used: ');
+      await second.client.patch(CHANGES);
+      await second.server.stop();
+      assert.deepEqual(files(state).sort(), [name, aside]);
+      assert.deepEqual(readFileSync(inFolder(aside)), bytes);
+
+      const third = await start(t, state);
+      assert.deepEqual(third.client.state.notices.filter(({ code }) => code === 'unusable-changes'), []);
+      assert.deepEqual(subset(third.client.state, CHANGES), CHANGES);
+    });
+  }
+
+  test('and cannot be used is set aside when its scene is opened later, too', async (t) => {
+    const state = temporaryFolder();
+    const first = await start(t, state);
+    await show(first.client, 'second.vrut');
+    await first.client.patch({ markers: { other: { point: [0, 0, 0] } } });
+    await first.server.stop();
+    const [name] = files(state);
+    writeFileSync(path.join(state, 'vrut-preview/scenes', name), '{"markers":');
+
+    const { client } = await start(t, state);
+    await show(client, 'second.vrut');
+    await client.until('the file is set aside', () => files(state).every(isSetAside), 10000);
+    await noticed(client, files(state)[0]);
+  });
+
   test('a folder that takes nothing is told in a notice, and all else goes on', async (t) => {
     const { client } = await start(t, '/dev/null/none');
     await client.patch(CHANGES);
