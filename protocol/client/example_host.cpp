@@ -22,11 +22,12 @@ constexpr std::chrono::milliseconds kFrame{16};
 volatile std::sig_atomic_t interrupted = 0;
 
 constexpr const char* kUsage =
-    "Usage: example_host [--host ADDRESS] [--port N] [--tls] [--ca-file FILE] [--server-name NAME]\n"
-    "                    [--token TEXT] [--name TEXT] [--lead]\n\n"
+    "Usage: example_host [--host ADDRESS] [--port N] [--path PATH] [--tls] [--ca-file FILE]\n"
+    "                    [--server-name NAME] [--token TEXT] [--name TEXT] [--lead]\n\n"
     "Follows the camera of VRUT Preview and what others point at: one line a change, until interrupted.\n\n"
     "  --host         default 127.0.0.1\n"
     "  --port         default 8080\n"
+    "  --path         of the WebSocket, default /ws; that of a room at an edge is /rooms/NAME/ws\n"
     "  --tls          speak TLS\n"
     "  --ca-file      of authorities that are trusted (PEM), default: the system's; implies --tls\n"
     "  --server-name  that the certificate must have, default: the host; implies --tls\n"
@@ -64,6 +65,8 @@ Arguments read_arguments(int argc, char** argv) {
             arguments.options.host = value();
         else if (option == "--port")
             arguments.options.port = read_port(value());
+        else if (option == "--path")
+            arguments.options.path = value();
         else if (option == "--tls")
             tls();
         else if (option == "--ca-file")

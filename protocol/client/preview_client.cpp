@@ -78,6 +78,12 @@ const char* name_of(Role role) {
     return role == Role::control ? "control" : role == Role::view ? "view" : "host";
 }
 
+/// Whether an HTTP request can have it as its target.
+bool is_path(const std::string& text) {
+    return !text.empty() && text.front() == '/' &&
+           std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~' && c != '#'; });
+}
+
 /// Throws boost::system::system_error where the authorities cannot be read.
 ssl::context context_of(const Tls& options) {
     ssl::context context(ssl::context::tls_client);
@@ -269,6 +275,11 @@ void PreviewClient::Impl::run(Clock::time_point end) {
 // --- the connection
 
 void PreviewClient::Impl::connect() {
+    if (!is_path(options.path))
+        return lose(connection_problem("the path '" + options.path +
+                                       "' must begin with '/', and have ASCII characters alone, no space "
+                                       "and no '#'"),
+                    true);
     try {
         connection = options.tls ? std::make_shared<Connection>(context, *options.tls)
                                  : std::make_shared<Connection>(context);
@@ -339,7 +350,7 @@ void PreviewClient::Impl::handshake() {
             request.set(beast::http::field::sec_websocket_protocol, "vrut-preview.v1");
         }));
         stream.read_message_max(options.max_message);
-        stream.async_handshake(connection->response, address(), "/ws",
+        stream.async_handshake(connection->response, address(), options.path,
                                on_present([this](error_code error) { on_handshake(error); }));
     });
 }

@@ -45,9 +45,10 @@ struct Options {
     /// A name, or better an address: a name is looked up by Asio's own thread.
     std::string host = "127.0.0.1";
     std::uint16_t port = 8080;
-    std::optional<Tls> tls;  ///< none: without encryption
-    std::string name;        ///< that others see
-    std::string token;       ///< empty: none
+    std::string path = "/ws";  ///< of the WebSocket; that of a room at an edge is "/rooms/NAME/ws"
+    std::optional<Tls> tls;    ///< none: without encryption
+    std::string name;          ///< that others see
+    std::string token;         ///< empty: none
     Role role = Role::host;
     std::chrono::milliseconds connect_timeout{5000};
     std::size_t max_message = std::size_t{64} << 20;  ///< bytes; who sends more is disconnected

@@ -107,15 +107,19 @@ public:
     }
     ~FakeServer() { thread_.join(); }
     std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
-    Json hello;  ///< once something it says has come
+    std::string target;  ///< of the request, once something it says has come
+    Json hello;          ///< likewise
     std::atomic<int> pongs{0};
 
 private:
     void run() {
         boost::beast::websocket::stream<tcp::socket> socket(context_);
         acceptor_.accept(socket.next_layer());
-        socket.accept();
         boost::beast::flat_buffer buffer;
+        boost::beast::http::request<boost::beast::http::empty_body> request;
+        boost::beast::http::read(socket.next_layer(), buffer, request);
+        target = std::string(request.target());
+        socket.accept(request);
         socket.read(buffer);
         hello = Json::parse(boost::beast::buffers_to_string(buffer.data()));
         socket.control_callback([this](boost::beast::websocket::frame_type kind, boost::beast::string_view) {
@@ -388,6 +392,30 @@ TEST_CASE("a token that is refused is told once, and not tried again and again")
     Host right(options);
     right.join();
     CHECK(right.problems.empty());
+}
+
+TEST_CASE("a host connects to /ws, or to the path that its options name") {
+    for (const char* path : {"", "/rooms/car/ws", "/ws?by=proxy"}) {
+        FakeServer server({kWelcome, kState});
+        client::Options options = options_for(server.port());
+        if (*path) options.path = path;
+        Host host(options);
+        host.join();
+        CHECK(server.target == (*path ? path : "/ws"));
+    }
+}
+
+TEST_CASE("on_error tells what is no path") {
+    for (const char* path : {"", "ws", "/rooms/my car/ws", "/ws#car", "/w\r\nHost: x", "/caf\u00e9"}) {
+        client::Options options;
+        options.path = path;
+        Host host(options);
+        REQUIRE(host.poll_until([&] { return !host.problems.empty(); }));
+        CHECK(host.problems[0].code == "connection");
+        CHECK(host.problems[0].message ==
+              std::string("VRUT Preview at 127.0.0.1:8080: the path '") + path +
+                  "' must begin with '/', and have ASCII characters alone, no space and no '#'");
+    }
 }
 
 TEST_CASE("a message that is larger than allowed ends the connection") {

@@ -298,6 +298,18 @@ test('example_host prints the camera that others set, and ends at SIGINT', async
   assert.equal(await ended, 0);
 });
 
+test('example_host prints the camera of a room, by an edge', { skip: !fs.existsSync('/usr/sbin/nats-server') && 'there is no nats-server' }, async (t) => {
+  const { Cluster } = await import('../web/several/cluster.js');
+  const cluster = new Cluster(t);
+  await cluster.startNats();
+  await cluster.serve('car', { scene: VRUT_CAR });
+  const edge = await cluster.edge();
+  await cluster.room(edge, 'car');
+  const host = spawn(VRUT_EXAMPLE_HOST, ['--port', new URL(edge.url).port, '--path', '/rooms/car/ws']);
+  t.after(() => host.kill());
+  await printed(host, /^revision \d+ eye .* fov [\d.]+\n/);
+});
+
 test('example_host prints what others point at', async () => {
   watcher.send({ type: 'patch', patch: { camera: { eye: [4, 1.5, 3], focus: [0, 0.5, 0], up: [0, 1, 0], fov: 35 } } });
   const host = spawn(VRUT_EXAMPLE_HOST, ['--port', port, '--token', TOKEN, '--name', 'wall']);
