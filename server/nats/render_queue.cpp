@@ -209,21 +209,45 @@ FilmQueue::FilmQueue(const Connection& connection, std::string run)
 }
 
 FilmQueue::~FilmQueue() {
+    js_DeleteStream(connection_.jetstream(), stream_.c_str(), nullptr, nullptr);
+    take_back_jobs();
+}
+
+/// How many of the film's jobs the queue has; 0, too, where the server does not answer.
+std::uint64_t FilmQueue::jobs_left() const {
     const std::string subject = jobs_subject(run_);
     jsOptions options;
     jsOptions_Init(&options);
-    options.Stream.Purge.Subject = subject.c_str();
-    js_PurgeStream(connection_.jetstream(), kJobs, &options, nullptr);
-    js_DeleteStream(connection_.jetstream(), stream_.c_str(), nullptr, nullptr);
+    options.Stream.Info.SubjectsFilter = subject.c_str();
+    jsStreamInfo* info = nullptr;
+    js_GetStreamInfo(&info, connection_.jetstream(), kJobs, &options, nullptr);
+    const Handle<jsStreamInfo, jsStreamInfo_Destroy> queue(info);
+    const jsStreamStateSubjects* const subjects = info ? info->State.Subjects : nullptr;
+    return subjects && subjects->Count > 0 ? subjects->List[0].Msgs : 0;
+}
+
+/// One by one: where a subject is purged, NATS 2.9 makes the workers' consumer skip the jobs of other films.
+void FilmQueue::take_back_jobs() const {
+    std::uint64_t left = jobs_left();
+    for (auto job = jobs_.rbegin(); left > 0 && job != jobs_.rend(); ++job) {
+        const natsStatus status = js_DeleteMsg(connection_.jetstream(), kJobs, *job, nullptr, nullptr);
+        if (status == NATS_OK)
+            --left;
+        else if (!has_refused(status))
+            return;  // it does not answer any more
+    }
 }
 
 void FilmQueue::post(const protocol::RenderJob& job) {
     const std::string text = protocol::encode(job);
     jsErrCode error{};
-    const natsStatus status = js_Publish(nullptr, connection_.jetstream(), jobs_subject(run_).c_str(),
+    jsPubAck* acknowledged = nullptr;
+    const natsStatus status = js_Publish(&acknowledged, connection_.jetstream(), jobs_subject(run_).c_str(),
                                          text.data(), static_cast<int>(text.size()), nullptr, &error);
+    const Handle<jsPubAck, jsPubAck_Destroy> acknowledgement(acknowledged);
     connection_.require(status, "a job cannot be sent", error);
     posted_ = std::max(posted_, job.image);
+    jobs_.push_back(acknowledged->Sequence);
 }
 
 /// What has come needs no place in the server, up to this message.

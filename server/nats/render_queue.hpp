@@ -98,6 +98,8 @@ public:
 
 private:
     void forget_received(natsMsg* last) const;
+    std::uint64_t jobs_left() const;
+    void take_back_jobs() const;
 
     struct Parts {
         std::vector<std::vector<std::uint8_t>> parts;
@@ -106,7 +108,8 @@ private:
 
     const Connection& connection_;
     std::string run_, stream_;
-    int posted_ = 0;  // the highest number of an image
+    int posted_ = 0;                   // the highest number of an image
+    std::vector<std::uint64_t> jobs_;  // their places in the queue
     int empty_polls_ = 0;
     Subscription subscription_;
     std::map<std::pair<int, std::string>, Parts> incomplete_;  // by image and delivery

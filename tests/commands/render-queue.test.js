@@ -279,6 +279,41 @@ describe('a queue of images', { skip: missing }, () => {
     assert.deepEqual(await streams(), { VRUT_JOBS: 0 });
   });
 
+  /// Collectors of films that wait in the queue, one behind the other; workers have been there before.
+  async function queuedInTurn(...names) {
+    const first = worker();
+    await eventually('a worker that waits', async () => (await waiting()) > 0);
+    await stop(first, 'SIGTERM');
+    const collectors = [];
+    for (const name of names) {
+      collectors.push(queued(name));
+      await eventually('its jobs', async () => (await streams()).VRUT_JOBS === FRAMES * collectors.length);
+    }
+    return collectors;
+  }
+
+  test('a film that ends leaves another its images', { timeout: 120_000 }, async () => {
+    const [first, second] = await queuedInTurn('first.png', 'second.png');
+    worker();
+    const expected = alone('first-alone.png');
+    await isWhole(first, 'first.png', expected);
+    await isWhole(second, 'second.png', expected);
+    assert.deepEqual(await streams(), { VRUT_JOBS: 0 });
+  });
+
+  test('a film that is stopped leaves others their images', { timeout: 120_000 }, async () => {
+    const [ahead, waits, runs, behind] = await queuedInTurn('ahead.png', 'waits.png', 'runs.png', 'behind.png');
+    assert.equal(await stop(waits, 'SIGINT'), 1);
+    assert.equal((await streams()).VRUT_JOBS, 3 * FRAMES);
+    worker();
+    await eventually('its first image', () => fs.existsSync(file('runs-0001.png')));
+    await stop(runs, 'SIGINT');
+    const expected = alone('ahead-alone.png');
+    await isWhole(ahead, 'ahead.png', expected);
+    await isWhole(behind, 'behind.png', expected);
+    await eventually('an empty queue', async () => (await streams()).VRUT_JOBS === 0);
+  });
+
   test('what is no job is logged and leaves the queue', async () => {
     const child = worker();
     await eventually('the worker', () => /waiting_for_jobs/.test(child.text));
