@@ -298,7 +298,7 @@ void Engine::handle_waiting() {
 
 void Engine::handle(const ClientJoined& joined) {
     clients_[joined.client].handled = joined.id;
-    output_.handled[joined.client].sequence = clients_[joined.client].sequence = kHelloSequence;
+    output_.handled[joined.client].sequence = clients_[joined.client].sequence = joined.sequence;
     const base::Clock::time_point now = base::Clock::now();
     room_->join(joined.client, joined.role, time_of(now), joined.name, joined.resume_key);
     stats_.joined(joined.client, joined.role, room_->client_name(joined.client), now);
@@ -409,7 +409,8 @@ void Engine::handle(const MessageReceived& received) {
     Client& client = found->second;
     output_.handled[received.client].bytes += received.bytes;
     output_.handled[received.client].requests += received.is_request();
-    output_.handled[received.client].sequence = client.sequence = received.sequence;
+    output_.handled[received.client].sequence = received.sequence;
+    client.sequence = std::max(client.sequence, received.sequence);  // an earlier one may come again
     const auto id = received.message ? received.message->id : received.message.error().id;
     if (id && *id <= client.handled)
         room_->reject(received.client, {id, code::out_of_range,

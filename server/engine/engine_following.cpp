@@ -73,7 +73,9 @@ void Engine::handle(const TakeOver& take_over) {
     room_->go_on(live_options());
     note_kept();
     for (const auto& [client, role] : room_->clients()) {
-        clients_[client].sequence = kHelloSequence;
+        const auto followed = take_over.sequences.find(client);
+        clients_[client].sequence =
+            std::max(kHelloSequence, followed == take_over.sequences.end() ? 0 : followed->second);
         output_.handled[client].sequence = kHelloSequence;
         stats_.joined(client, role, room_->client_name(client), now);
     }

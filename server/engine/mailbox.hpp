@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,9 +25,10 @@ struct ClientJoined {
     std::string client;
     protocol::Role role = protocol::Role::view;
     std::string name;
-    std::int64_t id = 0;          ///< of its `hello`; 0: it had none
-    std::string resume_key = {};  ///< see room::Steering::join
-    std::string token = {};       ///< as it gave it
+    std::int64_t id = 0;                      ///< of its `hello`; 0: it had none
+    std::string resume_key = {};              ///< see room::Steering::join
+    std::string token = {};                   ///< as it gave it
+    std::uint64_t sequence = kHelloSequence;  ///< of its last message that was handled, here or elsewhere
 };
 
 struct ClientLeft {
@@ -99,6 +101,7 @@ struct Follow {
 /// of clients would not wait for what is followed.
 struct TakeOver {
     std::uint64_t lease = 0;
+    std::map<std::string, std::uint64_t> sequences;  ///< of the clients' last messages that were followed
     std::function<void()> done;
 };
 

@@ -300,6 +300,8 @@ void RemoteRoom::learn(const protocol::RoomMessage& message, base::Clock::time_p
         number_ = message.number - 1;
         in_step_ = false;
         clock_difference_ = base::Clock::duration::max();
+        // All that was handled is in the room's log, and so in each frame of this server.
+        for (const auto& [name, client] : clients_) applies(name, {0, client.who.handled});
     }
     if (message.number != number_ + 1) in_step_ = false;
     number_ = message.number;
@@ -395,6 +397,13 @@ void RemoteRoom::take_state(const protocol::RoomOutput& said, engine::EngineOutp
     output.by_since = said.by_since;
 }
 
+/// A server that has taken the room over may not know all that frames of the one before showed.
+void RemoteRoom::applies(const std::string& client, const engine::Applied& applied) {
+    engine::Applied& known = applied_[client];
+    known.id = std::max(known.id, applied.id);
+    known.sequence = std::max(known.sequence, applied.sequence);
+}
+
 std::shared_ptr<const engine::EncodedPicture> RemoteRoom::picture_of(const protocol::RoomPicture& said,
                                                                      std::vector<std::uint8_t> bytes) {
     if (said.header_offset < 0 || static_cast<std::size_t>(said.header_offset) > bytes.size()) return nullptr;
@@ -437,7 +446,7 @@ std::shared_ptr<const engine::EncodedPicture> RemoteRoom::picture_of(const proto
         return picture;
     }
     for (const protocol::RoomApplied& applied : said.applied)
-        if (clients_.contains(applied.client)) applied_[applied.client] = {applied.id, applied.sequence};
+        if (clients_.contains(applied.client)) applies(applied.client, {applied.id, applied.sequence});
     std::erase_if(applied_, [&](const auto& entry) { return !clients_.contains(entry.first); });
     picture->applied = applied_;
     return picture;

@@ -85,6 +85,7 @@ private:
     void take_answers(const protocol::RoomOutput& said, bool may_be_known, engine::EngineOutput& output);
     void take_loading(const protocol::RoomOutput& said, engine::EngineOutput& output);
     void take_handled(const protocol::RoomOutput& said, engine::EngineOutput& output);
+    void applies(const std::string& client, const engine::Applied& applied);
     std::shared_ptr<const engine::EncodedPicture> picture_of(const protocol::RoomPicture& said,
                                                              std::vector<std::uint8_t> bytes);
     bool is_lost(base::Clock::time_point now) const;

@@ -275,9 +275,10 @@ RoomOwner::Client* RoomOwner::find(const std::string& edge, const std::string& c
 void RoomOwner::join(const std::string& edge, const protocol::EdgeClient& client) {
     const auto role = role_for_(client.role, client.token);
     if (!role || clients_.contains(client.client) || !is_of_edge(client.client, edge)) return;
-    clients_[client.client] = {edge, role == protocol::Role::control,
-                               std::max<std::uint64_t>(client.handled, engine::kHelloSequence)};
-    engine_->push(engine::ClientJoined{client.client, *role, client.name, client.id, client.resume});
+    const std::uint64_t handled = std::max(client.handled, engine::kHelloSequence);
+    clients_[client.client] = {edge, role == protocol::Role::control, handled};
+    engine_->push(
+        engine::ClientJoined{client.client, *role, client.name, client.id, client.resume, {}, handled});
 }
 
 void RoomOwner::leave(const std::string& client) {

@@ -66,6 +66,15 @@ jsCtx* impatient(natsConnection* connection) {
     return context;
 }
 
+/// How long a bucket keeps its values.
+std::chrono::nanoseconds time_to_live(const Connection& connection, kvStore* bucket) {
+    kvStatus* found = nullptr;
+    connection.require(kvStore_Status(&found, bucket), "the bucket of states cannot be read");
+    const Handle<kvStatus, kvStatus_Destroy> status(found);
+    const std::chrono::nanoseconds kept(kvStatus_TTL(found));
+    return kept > 0ns ? kept : std::chrono::nanoseconds::max();
+}
+
 }  // namespace
 
 RoomStore::RoomStore(const Connection& connection, std::string room)
@@ -75,7 +84,8 @@ RoomStore::RoomStore(const Connection& connection, std::string room)
       subject_("vrut.rooms." + room_ + ".log"),
       impatient_(impatient(connection.get())),
       leases_(bucket(kLeases, std::chrono::nanoseconds(kLease).count())),
-      states_(bucket(kStates, kKept)) {
+      states_(bucket(kStates, kKept)),
+      state_kept_(time_to_live(connection, states_.get())) {
     add_stream(connection, {log_, subject_});
 }
 
@@ -256,16 +266,36 @@ tl::expected<std::uint64_t, RoomStore::NotAppended> RoomStore::append(const std:
     if (status == NATS_OK) return acknowledged->Sequence;
     if (error != JSStreamWrongLastSequenceErr) return tl::unexpected(NotAppended::unknown);
     // Its acknowledgement may have been lost, longer ago than NATS remembers ids.
-    if (id_of(last + 1) == id) return last + 1;
+    const Message next = entry_at(last + 1);
+    if (next && header_of(next.get(), kId) == id) return last + 1;
     return tl::unexpected(NotAppended::superseded);
 }
 
-/// Empty where there is no such entry.
-std::string RoomStore::id_of(std::uint64_t sequence) const {
+/// Null where there is none, or NATS does not answer.
+Message RoomStore::entry_at(std::uint64_t sequence) const {
     natsMsg* found = nullptr;
     js_GetMsg(&found, impatient_.get(), log_.c_str(), sequence, nullptr, nullptr);
-    const Message message(found);
-    return found ? header_of(found, kId) : "";
+    return Message(found);
+}
+
+/// Whether servers have taken the room over, and nothing else: their first entries are empty.
+bool RoomStore::was_untouched(const Range& log) const {
+    if (log.first > 1) return false;
+    for (std::uint64_t sequence = 1; sequence <= log.last; ++sequence)
+        if (const Message entry = entry_at(sequence); !entry || natsMsg_GetDataLength(entry.get()) > 0)
+            return false;
+    return true;
+}
+
+bool RoomStore::may_begin(const Range& log) {
+    if (log.first > log.last || was_untouched(log)) return true;
+    const Message last = entry_at(log.last);
+    follow(log.last);  // from now on, by the clock that has set the entry's time
+    jsConsumerInfo* info = nullptr;
+    natsSubscription_GetConsumerInfo(&info, subscription_.get(), nullptr, nullptr);
+    const Handle<jsConsumerInfo, jsConsumerInfo_Destroy> follower(info);
+    return last && info &&
+           std::chrono::nanoseconds(info->Created - natsMsg_GetTime(last.get())) >= state_kept_;
 }
 
 }  // namespace vrut::server::nats

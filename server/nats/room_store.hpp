@@ -36,6 +36,8 @@ public:
     /// And forgets the log before that entry. Returns false where it could not be stored, or a later one is
     /// there.
     bool store_state(const State& state);
+    /// How long a state is kept that is not stored again. What is older is forgotten.
+    std::chrono::nanoseconds state_kept() const { return state_kept_; }
 
     // --- the log
     struct Entry {
@@ -56,6 +58,9 @@ public:
     };
     /// What the log has; none where NATS does not answer.
     std::optional<Range> range() const;
+    /// Whether a server may begin the room without a state, behind this log: nothing was done in the room, or
+    /// for so long that NATS has forgotten its state. Throws std::runtime_error where NATS does not answer.
+    bool may_begin(const Range& log);
     enum class NotAppended { superseded, unknown };  ///< superseded: another entry is there
     /// Adds an entry behind the one of `last`, and only there. An entry of this `id` is added once, however
     /// often it is tried. Returns its sequence.
@@ -71,12 +76,14 @@ private:
         std::uint64_t revision = 0;  ///< of the key
     };
     std::optional<Kept> kept_state() const;
-    std::string id_of(std::uint64_t sequence) const;
+    Message entry_at(std::uint64_t sequence) const;
+    bool was_untouched(const Range& log) const;
 
     const Connection& connection_;
     const std::string room_, log_, subject_;
     const JetStream impatient_;  ///< a server that draws does not wait for long
     KeyValue leases_, states_;
+    std::chrono::nanoseconds state_kept_;
     std::string holder_;
     std::uint64_t lease_revision_ = 0;  ///< of the key, as this server renewed it last
     std::uint64_t state_revision_ = 0;  ///< of the key, as this server knows it; 0: it has none

@@ -17,9 +17,9 @@ using std::chrono::steady_clock;
 
 constexpr auto kPoll = 50ms;
 constexpr auto kRenew = 500ms;
-constexpr auto kYield = 3s;         // to who drew the room, after NATS was away for both
-constexpr auto kPause = 5s;         // after what would come again at once
-constexpr auto kStateAgain = 2min;  // before it expires
+constexpr auto kYield = 3s;      // to who drew the room, and may be cut off or hang
+constexpr auto kPause = 5s;      // after what would come again at once
+constexpr int kTimesStored = 5;  // a state, in the time for which NATS keeps it
 constexpr std::size_t kEntryBytes = std::size_t{256} << 10;  // of lines, at most
 constexpr std::size_t kMostLines = 100'000;                  // since a checkpoint, that wait for NATS
 constexpr std::size_t kMostGated = 2'000;                    // outputs and frames that wait for edges
@@ -231,7 +231,6 @@ void SharedRoom::follow_entry(const RoomStore::Entry& entry) {
 bool SharedRoom::follow(const std::stop_token& stop) {
     observe::log_info("room_followed", {{"room", options_.room}});
     std::uint64_t reconnects = connection_.reconnects();
-    steady_clock::time_point may_take_from{};
     while (!stop.stop_requested()) {
         if (has_state_)
             follow_log();
@@ -244,11 +243,31 @@ bool SharedRoom::follow(const std::stop_token& stop) {
         }
         if (reconnects != connection_.reconnects()) {
             reconnects = connection_.reconnects();
-            may_take_from = steady_clock::now() + kYield;
+            may_take_from_ = steady_clock::now() + kYield;
         }
-        const bool may_take = connection_.is_connected() && steady_clock::now() >= may_take_from;
-        if (may_take && store_.take_lease(id_) && take_over()) return true;
+        const bool may_take = connection_.is_connected() && steady_clock::now() >= may_take_from_;
+        if (may_take && may_draw() && store_.take_lease(id_) && take_over()) return true;
     }
+    return false;
+}
+
+/// With a state, or as the first. While NATS has a log without the state from which it goes on, a server that
+/// has followed the room, and may hang, has all; who has nothing would begin an empty room in its place.
+bool SharedRoom::may_draw() {
+    if (has_state_) return true;
+    const auto log = store_.range();
+    if (!log) return false;
+    followed_ = log->last;
+    if (store_.may_begin(*log)) return true;
+    may_take_from_ = steady_clock::now() + kYield;
+    if (!std::exchange(waits_, true))
+        observe::log_warning(
+            "room_waits",
+            {{"room", options_.room},
+             {"reason",
+              "NATS has the log of the room, but no state: a server that has followed the room draws it; if "
+              "none is left, serve it by another name, or wait for ten minutes, when NATS has forgotten "
+              "it"}});
     return false;
 }
 
@@ -256,13 +275,11 @@ bool SharedRoom::follow(const std::stop_token& stop) {
 /// in the log is the lease's number, which rises with each server that takes over.
 bool SharedRoom::take_over() {
     // A state may have been stored since it was asked for; else this server is the first.
-    if (!has_state_ && !(has_state_ = load_state())) {
-        const auto log = store_.range();
-        store_.follow(followed_ = log ? log->last : 0);
-    }
+    if (!has_state_) has_state_ = load_state();
     for (const auto end = steady_clock::now() + RoomStore::kLease; steady_clock::now() < end;) {
         const auto log = store_.range();
         if (!log) continue;
+        if (!has_state_ && followed_ < log->last) break;  // another server was
         // What came between was forgotten when a later state was stored.
         if (followed_ + 1 < log->first && !load_state())
             throw std::runtime_error("entries of the room's log are lost, from " +
@@ -275,8 +292,10 @@ bool SharedRoom::take_over() {
         renewed_at_ = steady_clock::now();
         observe::log_info("room_taken_over", {{"room", options_.room}, {"lease", lease}});
         std::map<std::string, RoomOwner::Known> of_edges;
+        std::map<std::string, std::uint64_t> sequences;
+        for (const auto& [client, known] : clients_) sequences[client] = known.sequence;
         std::promise<void> taken_over;
-        engine_->push(engine::TakeOver{lease, [&] { taken_over.set_value(); }});
+        engine_->push(engine::TakeOver{lease, std::move(sequences), [&] { taken_over.set_value(); }});
         taken_over.get_future().wait();
         {
             const std::lock_guard lock(mutex_);
@@ -377,8 +396,8 @@ void SharedRoom::store_restart() {
     restart_is_announced_ = false;
     restart_.reset();
     stored_lines_ = restart.number;
-    state_stored_at_ = steady_clock::now();
-    kept_ = std::move(restart);
+    state_again_at_ = steady_clock::now() + store_.state_kept() / kTimesStored;
+    kept_ = {followed_, std::move(restart.text)};
     release(to_clients_, stored_lines_);
     release(to_edges_, stored_lines_);
 }
@@ -416,19 +435,29 @@ bool SharedRoom::append_lines() {
     return true;
 }
 
-/// Where all lines before it are stored, and no others.
+/// Where all lines before it are stored, and no others. Else the last one again, before it expires.
 void SharedRoom::store_checkpoint() {
+    std::optional<Checkpoint> newest;
     {
         const std::lock_guard lock(mutex_);
-        if (checkpoint_ && checkpoint_->number == stored_lines_ && entry_.empty())
-            kept_ = std::exchange(checkpoint_, std::nullopt);
-        else if (!kept_ || kept_->number != stored_lines_ ||
-                 steady_clock::now() - state_stored_at_ < kStateAgain)
-            return;
+        const bool all_is_stored = checkpoint_ && checkpoint_->number == stored_lines_ && entry_.empty();
+        if (checkpoint_ ? !all_is_stored : steady_clock::now() < state_again_at_) return;
+        newest = std::exchange(checkpoint_, std::nullopt);
     }
-    state_stored_at_ = steady_clock::now();
-    if (!store_.store_state({followed_, kept_->text}))
-        observe::log_warning("room_state_not_stored", {{"room", options_.room}});
+    if (newest) kept_ = {followed_, std::move(newest->text)};
+    const bool is_stored = newest ? store_.store_state(*kept_) : store_state_again();
+    state_again_at_ = steady_clock::now() + (is_stored ? store_.state_kept() / kTimesStored : kPause);
+    if (!is_stored) observe::log_warning("room_state_not_stored", {{"room", options_.room}});
+}
+
+/// Also while lines come without end: the log has all that came since. Where this server has followed the
+/// room and not stored a state yet, it is the one of the server before.
+bool SharedRoom::store_state_again() try {
+    auto at_nats = store_.state();
+    if (at_nats && (!kept_ || kept_->sequence < at_nats->sequence)) kept_ = std::move(at_nats);
+    return kept_ && store_.store_state(*kept_);
+} catch (const std::runtime_error&) {  // NATS does not answer
+    return false;
 }
 
 }  // namespace vrut::server::nats

@@ -73,6 +73,7 @@ private:
     bool follow(const std::stop_token& stop);
     void follow_log();
     void follow_entry(const RoomStore::Entry& entry);
+    bool may_draw();
     bool take_over();
     // While this server does.
     void own(const std::stop_token& stop);
@@ -81,6 +82,7 @@ private:
     void go_on_alone();
     void store_restart();
     void store_checkpoint();
+    bool store_state_again();
     bool renew();
     void note(const protocol::LogLine& line);
     void when_stored(std::function<void()> to_clients, std::function<void()> to_edges);
@@ -103,8 +105,10 @@ private:
     std::string entry_;
     std::uint64_t entry_number_ = 0;  ///< of its last line
     std::uint64_t entries_ = 0;
-    std::chrono::steady_clock::time_point renewed_at_{}, state_stored_at_{};
-    std::optional<Checkpoint> kept_;  ///< the last one, which is stored again before it expires
+    bool waits_ = false;                                     ///< for a state, and has said so
+    std::chrono::steady_clock::time_point may_take_from_{};  ///< the room
+    std::chrono::steady_clock::time_point renewed_at_{}, state_again_at_{};
+    std::optional<RoomStore::State> kept_;  ///< the last one, which is stored again before it expires
 
     // Of clients: the sequences of their last messages, as the log has them.
     std::map<std::string, RoomOwner::Known> clients_;

@@ -2,7 +2,7 @@
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { existsSync } from 'node:fs';
-import { createServer } from 'node:net';
+import { connect, createServer } from 'node:net';
 import { setTimeout as delay } from 'node:timers/promises';
 import { PROGRAM, sceneFile, temporaryFolder } from '../contract/server.js';
 import { Schema } from '../contract/schema.js';
@@ -59,6 +59,7 @@ export class Process {
 
 export class Cluster {
   processes = [];
+  #asked = 0;
   /** What servers and edges want to see, if any. */
   headers = {};
   folder = temporaryFolder();
@@ -85,6 +86,25 @@ export class Cluster {
     await eventually('the NATS server', async () => (await fetch(`http://127.0.0.1:${this.monitoring}/healthz`)).ok);
     this.url ??= `nats://127.0.0.1:${this.port}`;
     return nats;
+  }
+
+  /** What NATS answers to a message, as JSON. */
+  async asked(subject, message = '') {
+    const text = typeof message === 'string' ? message : JSON.stringify(message);
+    const answers = `answers.${++this.#asked}`;
+    const socket = connect(this.port, '127.0.0.1').setEncoding('utf8');
+    try {
+      socket.write(`CONNECT {"verbose":false}\r\nSUB ${answers} 1\r\nPUB ${subject} ${answers} ${Buffer.byteLength(text)}\r\n${text}\r\n`);
+      let received = '';
+      for await (const data of socket) {
+        received += data;
+        const answer = /^MSG \S+ 1 .*\r\n(.*)\r\n/m.exec(received);
+        if (answer) return JSON.parse(answer[1]);
+      }
+      throw new Error(`NATS has not answered: ${received}`);
+    } finally {
+      socket.destroy();
+    }
   }
 
   /** A server of the room `name`, which follows or draws. */

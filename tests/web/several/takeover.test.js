@@ -23,6 +23,26 @@ async function stage(t) {
 
 const pointer = (event, x, y) => ({ type: `pointer${event}`, pointerId: 1, pointerType: 'touch', x, y, button: event === 'move' ? -1 : 0, buttons: event === 'up' ? 0 : 1, isPrimary: true });
 
+/** A watcher who has sized its view, and has a frame. */
+async function watching(t, room) {
+  const watcher = await ContractClient.join(t, room, { role: 'view' });
+  await watcher.ask({ type: 'resize', width: 400, height: 300, pixelRatio: 1 });
+  await sees(watcher, 1);
+  return watcher;
+}
+
+/** Gets so many frames, as the page does: grants have no id, so that they are no messages to the room. */
+async function sees(watcher, count, lease = 0) {
+  for (let seen = watcher.frames.length; count > 0; seen = watcher.frames.length) {
+    watcher.send({ type: 'frame' }, { id: null });
+    await watcher.until(`${count} frames`, () => watcher.frames.length > seen, WITHIN_MS);
+    if (watcher.frames.at(-1).header.lease >= lease) --count;
+  }
+}
+
+/** The view moves on and on: no frame shows what is to be seen now. */
+const flying = (client) => client.ask({ type: 'fly', keyframes: [{ at: 60_000, camera: { eye: [-3, 2, 5] } }] });
+
 /** Draws a circle with a finger, and all the time asks for frames. @returns the numbers of the frames that came */
 async function drag(client, milliseconds, during = async () => {}) {
   client.send(pointer('down', 200, 150));
@@ -65,6 +85,33 @@ describe('a room of two servers', { skip: missing }, () => {
       assert.equal(pose(client), before);
     });
   }
+
+  test('shows a view that moves to watchers who touch nothing, after another server has taken it over', async (t) => {
+    const { cluster, servers, room, client } = await stage(t);
+    const watchers = await Promise.all([1, 2].map(() => watching(t, room)));
+    // What the room's log does not have counts, too.
+    await watchers[1].ask({ type: 'check', cues: { format: 'vrut-preview-cues', version: 1, cues: {} } });
+    const owner = await cluster.owner(servers);
+    await owner.stop();
+    await cluster.owner(servers);
+    const { lease } = (await client.frame((header) => header.lease > watchers[0].frames.at(-1).header.lease)).header;
+    await flying(client);
+    await Promise.all(watchers.map((watcher) => sees(watcher, 20, lease)));
+  });
+
+  test('shows a view that moves to watchers whose edge was cut off for so long that it counted as lost', async (t) => {
+    const { cluster, servers, edge, room } = await stage(t);
+    const watcher = await watching(t, room);
+    const owner = await cluster.owner(servers);
+    const presenter = await ContractClient.join(t, { ...room, url: owner.url, ws: `${owner.url}ws`.replace('http', 'ws') }, { name: 'At the door' });
+    edge.signal('SIGSTOP');
+    await eventually('that the edge is lost', () => owner.logged('edge_lost').length > 0, WITHIN_MS);
+    edge.signal('SIGCONT');
+    await presenter.ask({ type: 'control', action: 'take' });
+    await eventually('that it is back', () => owner.logged('edge_joined').length > 1, WITHIN_MS);
+    await flying(presenter);
+    await sees(watcher, 20);
+  });
 
   test('keeps the camera to the last bit over three servers, one after the other', async (t) => {
     const { cluster, servers, client, edge } = await stage(t);
