@@ -12,10 +12,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPoll = 50ms;
-constexpr auto kAlive = 1s;
-constexpr auto kSilence = 2s;   // then the room has no server
-constexpr auto kPatience = 3s;  // of a client that asks to come in
+constexpr auto kInboxPoll = 50ms;
+constexpr auto kEdgeAlive = 1s;
+constexpr auto kRoomSilence = 2s;        // then the room has no server
+constexpr auto kAdmissionPatience = 3s;  // of a client that asks to come in
 constexpr auto kPicturePatience = 30s;
 constexpr auto kSyncAgain = 300ms;  // at the earliest
 constexpr std::size_t kAnswersKnown = 256;
@@ -59,7 +59,7 @@ void RemoteRoom::say(decltype(protocol::EdgeMessage::what) what) {
 void RemoteRoom::admit(const engine::Admission& asked, Admitted done) {
     const std::lock_guard lock(mutex_);
     const std::int64_t number = next_asked_++;
-    asked_[number] = {std::move(done), base::Clock::now() + kPatience};
+    asked_[number] = {std::move(done), base::Clock::now() + kAdmissionPatience};
     say(protocol::EdgeAdmission{number, asked.role, asked.token});
 }
 
@@ -170,7 +170,9 @@ std::string RemoteRoom::description() const {
     return alive_ ? alive_->renderer : "";
 }
 
-bool RemoteRoom::is_lost(base::Clock::time_point now) const { return !heard_ || now - *heard_ > kSilence; }
+bool RemoteRoom::is_lost(base::Clock::time_point now) const {
+    return !heard_ || now - *heard_ > kRoomSilence;
+}
 
 std::optional<std::string> RemoteRoom::why_unready() const {
     if (!connection_.is_connected()) return "the NATS server cannot be reached";
@@ -192,7 +194,7 @@ std::size_t RemoteRoom::events_waiting() const {
 void RemoteRoom::receive(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         poll(base::Clock::now());
-        if (auto packet = inbox_.next(kPoll)) take(*std::move(packet));
+        if (auto packet = inbox_.next(kInboxPoll)) take(*std::move(packet));
     }
 }
 
@@ -202,7 +204,7 @@ void RemoteRoom::poll(base::Clock::time_point now) {
     engine::EngineOutput output;
     {
         const std::lock_guard lock(mutex_);
-        if (now - said_alive_at_ >= kAlive) {
+        if (now - said_alive_at_ >= kEdgeAlive) {
             said_alive_at_ = now;
             say(protocol::EdgeAlive{});
         }
@@ -263,7 +265,7 @@ void RemoteRoom::take(Packet packet) {
     const base::Clock::time_point now = base::Clock::now();
     auto message = protocol::parse_room_message(packet.json);
     if (!message) {
-        if (now - complained_at_ < kPatience) return;
+        if (now - complained_at_ < kAdmissionPatience) return;
         complained_at_ = now;
         return observe::log_warning("invalid_relay", {{"room", room_}, {"reason", message.error()}});
     }

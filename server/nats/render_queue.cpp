@@ -16,17 +16,17 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char *kJobs = "VRUT_JOBS", *kWorkers = "workers";
-constexpr std::size_t kPartBytes = std::size_t{512} << 10;  // a NATS server takes messages of a megabyte
-constexpr std::size_t kMostParts = 4096;
-constexpr std::chrono::milliseconds kPoll{500};
+constexpr std::size_t kImagePartBytes = std::size_t{512} << 10;  // a NATS server takes messages of a megabyte
+constexpr std::size_t kMostImageParts = 4096;
+constexpr std::chrono::milliseconds kQueuePoll{500};
 constexpr int kPollsOfCheck = 4;  // after so many without a message it is asked whether the queue is there
-constexpr auto kKept = 24h;
+constexpr auto kFilmKept = 24h;
 
 std::string jobs_subject(const std::string& run) { return "vrut.jobs." + run; }
 std::string images_subject(const std::string& run) { return "vrut.images." + run; }
 std::string images_stream(const std::string& run) { return "VRUT_IMAGES_" + run; }
 
-Stream stream_of_jobs() { return {kJobs, jobs_subject("*"), js_WorkQueuePolicy, kKept}; }
+Stream stream_of_jobs() { return {kJobs, jobs_subject("*"), js_WorkQueuePolicy, kFilmKept}; }
 
 /// False where the server says so, not where it says nothing.
 bool has_stream(const Connection& connection, const std::string& name) {
@@ -77,12 +77,12 @@ bool TakenJob::publish(std::span<const std::byte> bytes, const std::map<std::str
 }
 
 void TakenJob::finish(std::span<const std::uint8_t> file) {
-    const std::size_t parts = std::max<std::size_t>((file.size() + kPartBytes - 1) / kPartBytes, 1);
+    const std::size_t parts = std::max<std::size_t>((file.size() + kImagePartBytes - 1) / kImagePartBytes, 1);
     const std::string sender = random_id();
     for (std::size_t i = 0; i < parts; ++i) {
-        const std::size_t first = i * kPartBytes;
+        const std::size_t first = i * kImagePartBytes;
         const bool wanted =
-            publish(std::as_bytes(file.subspan(first, std::min(kPartBytes, file.size() - first))),
+            publish(std::as_bytes(file.subspan(first, std::min(kImagePartBytes, file.size() - first))),
                     {{"Image", std::to_string(job_.image)},
                      {"Sender", sender},
                      {"Part", std::to_string(i)},
@@ -155,11 +155,12 @@ bool JobQueue::is_lost() {
 
 std::unique_ptr<TakenJob> JobQueue::take() {
     natsMsgList list{};
-    const natsStatus status = natsSubscription_Fetch(&list, subscription_.get(), 1, kPoll.count(), nullptr);
+    const natsStatus status =
+        natsSubscription_Fetch(&list, subscription_.get(), 1, kQueuePoll.count(), nullptr);
     Message message(status == NATS_OK && list.Count > 0 ? std::exchange(list.Msgs[0], nullptr) : nullptr);
     natsMsgList_Destroy(&list);
     if (message) return take_message(std::move(message));
-    if (status != NATS_OK && status != NATS_TIMEOUT) std::this_thread::sleep_for(kPoll);
+    if (status != NATS_OK && status != NATS_TIMEOUT) std::this_thread::sleep_for(kQueuePoll);
     if (++empty_polls_ % kPollsOfCheck != 0 || !is_lost()) return {};
     try {
         subscribe();
@@ -195,7 +196,7 @@ std::unique_ptr<TakenJob> JobQueue::take_message(Message message) {
 FilmQueue::FilmQueue(const Connection& connection, std::string run)
     : connection_(connection), run_(std::move(run)), stream_(images_stream(run_)) {
     add_stream(connection, stream_of_jobs());
-    add_stream(connection, {stream_, images_subject(run_), js_LimitsPolicy, kKept});
+    add_stream(connection, {stream_, images_subject(run_), js_LimitsPolicy, kFilmKept});
     jsSubOptions options;
     jsSubOptions_Init(&options);
     options.Stream = stream_.c_str();
@@ -264,7 +265,7 @@ void FilmQueue::forget_received(natsMsg* last) const {
 
 std::optional<FilmQueue::Result> FilmQueue::next() {
     natsMsg* received = nullptr;
-    if (natsSubscription_NextMsg(&received, subscription_.get(), kPoll.count()) != NATS_OK) {
+    if (natsSubscription_NextMsg(&received, subscription_.get(), kQueuePoll.count()) != NATS_OK) {
         if (++empty_polls_ % kPollsOfCheck == 0 && !has_stream(connection_, stream_))
             throw std::runtime_error("--nats: " + connection_.name() +
                                      ": the server has lost the film's queue; start the film again");
@@ -282,7 +283,7 @@ std::optional<FilmQueue::Result> FilmQueue::next() {
         return result;
     }
     const auto part = number_of(header_of(received, "Part")), parts = number_of(header_of(received, "Parts"));
-    if (!part || !parts || *parts > kMostParts || *part >= *parts) return {};
+    if (!part || !parts || *parts > kMostImageParts || *part >= *parts) return {};
     Parts& incomplete = incomplete_[{result.image, header_of(received, "Sender")}];
     if (incomplete.parts.empty()) incomplete = {std::vector<std::vector<std::uint8_t>>(*parts), *parts};
     if (incomplete.parts.size() != *parts || !incomplete.parts[*part].empty()) return {};

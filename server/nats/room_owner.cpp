@@ -11,9 +11,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kAlive = 500ms;
-constexpr auto kSilence = 5s;  // then an edge is gone
-constexpr auto kPoll = 100ms;
+constexpr auto kOwnerAlive = 500ms;
+constexpr auto kEdgeSilence = 5s;  // then an edge is gone
+constexpr auto kOutboxPoll = 100ms;
 constexpr std::size_t kAnswersKept = 1024, kAnswerBytesKept = std::size_t{4} << 20;
 
 double ms_of(base::Clock::time_point time) {
@@ -220,13 +220,13 @@ std::optional<Packet> RoomOwner::picture_packet(const engine::EncodedPicture& pi
 void RoomOwner::receive(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         const base::Clock::time_point now = base::Clock::now();
-        if (now - alive_at_ >= kAlive) send_alive();
+        if (now - alive_at_ >= kOwnerAlive) send_alive();
         forget_silent_edges(now);
-        const auto packet = inbox_->next(kPoll);
+        const auto packet = inbox_->next(kOutboxPoll);
         if (!packet) continue;
         auto message = protocol::parse_edge_message(packet->json);
         if (!message) {
-            if (now - complained_at_ < kSilence) continue;
+            if (now - complained_at_ < kEdgeSilence) continue;
             complained_at_ = now;
             observe::log_warning("invalid_relay", {{"reason", message.error()}});
             continue;
@@ -254,7 +254,7 @@ void RoomOwner::send_alive() {
 
 void RoomOwner::forget_silent_edges(base::Clock::time_point now) {
     for (auto edge = edges_.begin(); edge != edges_.end();) {
-        if (now - edge->second.heard < kSilence) {
+        if (now - edge->second.heard < kEdgeSilence) {
             ++edge;
             continue;
         }

@@ -17,9 +17,9 @@ using namespace std::chrono_literals;
 
 constexpr const char *kLeases = "VRUT_LEASES", *kStates = "VRUT_ROOMS";
 /// A room that nobody has drawn for so long is forgotten.
-constexpr std::int64_t kKept = std::chrono::nanoseconds(10min).count();
+constexpr std::int64_t kStateKept = std::chrono::nanoseconds(10min).count();
 constexpr const char* kId = "Nats-Msg-Id";
-constexpr std::chrono::milliseconds kPatience{400};
+constexpr std::chrono::milliseconds kStorePatience{400};
 constexpr std::size_t kMostEntries = 256;
 
 std::string upper(std::string text) {
@@ -56,11 +56,11 @@ std::optional<std::string> inflated(std::string_view bytes) {
     return text;
 }
 
-/// A context of JetStream whose calls return within kPatience.
+/// A context of JetStream whose calls return within kStorePatience.
 jsCtx* impatient(natsConnection* connection) {
     jsOptions options;
     jsOptions_Init(&options);
-    options.Wait = kPatience.count();
+    options.Wait = kStorePatience.count();
     jsCtx* context = nullptr;
     natsConnection_JetStream(&context, connection, &options);
     return context;
@@ -84,7 +84,7 @@ RoomStore::RoomStore(const Connection& connection, std::string room)
       subject_("vrut.rooms." + room_ + ".log"),
       impatient_(impatient(connection.get())),
       leases_(bucket(kLeases, std::chrono::nanoseconds(kLease).count())),
-      states_(bucket(kStates, kKept)),
+      states_(bucket(kStates, kStateKept)),
       state_kept_(time_to_live(connection, states_.get())) {
     add_stream(connection, {log_, subject_});
 }
@@ -258,7 +258,7 @@ tl::expected<std::uint64_t, RoomStore::NotAppended> RoomStore::append(const std:
     natsMsgHeader_Set(created, kId, id.c_str());
     jsPubOptions options;
     jsPubOptions_Init(&options);
-    options.MaxWait = kPatience.count();
+    options.MaxWait = kStorePatience.count();
     jsErrCode error{};
     jsPubAck* acknowledged = nullptr;
     const natsStatus status = js_PublishMsg(&acknowledged, impatient_.get(), created, &options, &error);

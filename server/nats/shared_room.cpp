@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
-constexpr auto kPoll = 50ms;
+constexpr auto kLogPoll = 50ms;
 constexpr auto kRenew = 500ms;
 constexpr auto kYield = 3s;      // to who drew the room, and may be cut off or hang
 constexpr auto kPause = 5s;      // after what would come again at once
@@ -199,7 +199,7 @@ void SharedRoom::follow_log() try {
         const auto state = store_.state();
         if (state && state->sequence >= *awaited_state_) load_state();
     }
-    for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
+    for (const RoomStore::Entry& entry : store_.next(kLogPoll)) follow_entry(entry);
 } catch (const RoomStore::EntriesForgotten&) {
     if (!load_state()) throw;
 }
@@ -239,7 +239,7 @@ bool SharedRoom::follow(const std::stop_token& stop) {
         {
             std::unique_lock lock(mutex_);
             if (failure_) throw std::runtime_error(*failure_);
-            if (!has_state_) written_.wait_for(lock, stop, kPoll, [] { return false; });
+            if (!has_state_) written_.wait_for(lock, stop, kLogPoll, [] { return false; });
         }
         if (reconnects != connection_.reconnects()) {
             reconnects = connection_.reconnects();
@@ -318,7 +318,7 @@ void SharedRoom::own(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         {
             std::unique_lock lock(mutex_);
-            written_.wait_for(lock, stop, kPoll, [&] { return !lines_.empty(); });
+            written_.wait_for(lock, stop, kLogPoll, [&] { return !lines_.empty(); });
         }
         if (steady_clock::now() - renewed_at_ >= kRenew && !renew()) throw Superseded();
         if (!append_lines()) throw Superseded();

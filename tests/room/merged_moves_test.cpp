@@ -124,7 +124,7 @@ TEST_CASE("a pinch in one burst is about the point that the first move of either
 }
 
 TEST_CASE("what a later move says has been touched counts in a burst no more than one by one") {
-    for (const std::size_t later : {2, 3}) {
+    for (const std::size_t later : {2U, 3U}) {
         std::vector<json> messages{
             pointer("down", 1, "mouse", {345, 191.7}, 2, 2), pointer("move", 1, "mouse", {365, 191.7}, -1, 2),
             pointer("move", 1, "mouse", {385, 195.2}, -1, 2),
