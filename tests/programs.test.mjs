@@ -43,7 +43,3 @@ test('a test of the default tier starts what that tier installs', () => {
   assert.deepEqual(faultsOf({ queue: ['nats-server'] }, ['several'], []), []);
   assert.deepEqual(faultsOf({ queue: ['nats-server?'] }, ['contract'], []), [], 'it is used if it is there');
 });
-
-test('a row belongs to a test', () => {
-  assert.match(faultsOf({ queue: ['nats-server'], gone: ['curl'] }).join('\n'), /^tests\/programs\.txt has a row of gone/);
-});
