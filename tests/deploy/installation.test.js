@@ -22,7 +22,7 @@ test('what a server needs is installed, and nothing else', () => {
   const scenes = path.join(SOURCE, 'scenes');
   const expected = [
     'bin/vrut-preview', ...['vrut-preview', 'vrut-preview-edge'].map((name) => `lib/systemd/system/${name}.service`),
-    'share/bash-completion/completions/vrut-preview',
+    'libexec/vrut-preview/vrut-preview-chart', 'share/bash-completion/completions/vrut-preview',
     ...['', '-serve', '-edge', '-render', '-worker', '-replay', '-info', '-convert', '-compare', '-cues', '-chart'].map((command) => `share/man/man1/vrut-preview${command}.1`),
     ...['CHANGELOG.md', 'README.md', 'copyright', 'haproxy-edges.cfg', 'haproxy.cfg', 'nats.conf', 'watchers.svg'].map((name) => `share/doc/vrut-preview/${name}`),
     ...['README.md', 'car/car.vrut'].map((name) => `share/vrut-preview/scenes/${name}`),
@@ -68,6 +68,7 @@ test('it draws and serves the car from where it was moved to', async () => {
   const elsewhere = { cwd: '/', env: { PATH: '/usr/bin:/bin' } };
   output(program, ['render', path.join(prefix, 'share/vrut-preview/scenes/car/car.vrut'), '-o', path.join(folder, 'car.png'), '--size', '64x36', '--samples', '1'], elsewhere);
   assert.ok(fs.statSync(path.join(folder, 'car.png')).size > 1000);
+  assert.throws(() => output(program, ['chart', 'none.vrut', '--calibrate'], elsewhere), /none\.vrut: there is no such file/);
   const server = new Running(program, ['serve', '--listen', '127.0.0.1:0', '--scenes', path.join(prefix, 'share/vrut-preview/scenes')], elsewhere);
   const [, port] = await server.printed(/listening on http:\/\/127\.0\.0\.1:(\d+)\//);
   assert.ok(server.text.includes(path.join(prefix, 'share/vrut-preview/scenes/car/car.vrut')), server.text);
