@@ -5,7 +5,7 @@ import { Server } from './program.js';
 import { HeldLink } from './held-link.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
-const TABLET = { width: 1180, height: 820, pixelRatio: 1 };
+const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
 const MIDDLE = [TABLET.width / 2, TABLET.height / 2];
 const WITHIN_PX = 2;
 const FADED_WITHIN_MS = 2000;
