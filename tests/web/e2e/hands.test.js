@@ -75,10 +75,12 @@ describe('hands on a tablet without WebGL 2 whose pictures are late', { skip: br
 
   const header = ({ frame }) => tablet.wire.frames.find((candidate) => candidate.frame === frame);
 
+  /** Until no frame comes any more: that which shows all, at its finest. */
   async function settled() {
     const { lastId } = await look();
-    const { frame } = await tablet.wire.still(lastId);
-    await tablet.shows(frame);
+    await tablet.wire.still(lastId);
+    await tablet.wire.finest();
+    await tablet.shows(tablet.wire.frames.at(-1).frame);
   }
 
   test('a mark goes with each finger and away with it', async () => {
