@@ -39,19 +39,11 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
   });
 
   test('which is the picture that render makes from the same camera', async () => {
-    await tablet.shows((await tablet.wire.still()).frame);
-    const compare = async () => {
-      const { frame } = await tablet.look();
-      const { camera, width, height, quality } = tablet.wire.frames.find((header) => header.frame === frame);
-      assert.equal(quality.level, 'still');
-      const png = await render({ camera, width, height, samples: quality.samples });
-      const comparison = await tablet.compare(png);
-      return comparison.frame === frame && comparison;
-    };
-    // Once more where a finer still frame came in the meantime.
-    const comparison = (await compare()) || (await compare()) || (await compare());
-    assert.ok(comparison, 'the still picture never came to rest');
-    const { psnr, drawn } = comparison;
+    const { frame, camera, width, height, quality } = await tablet.wire.finest();
+    await tablet.shows(frame);
+    const png = await render({ camera, width, height, samples: quality.samples });
+    const { frame: compared, psnr, drawn } = await tablet.compare(png);
+    assert.equal(compared, frame);
     assert.ok(psnr >= LEAST_PSNR_DB, `peak signal to noise ratio ${psnr} dB`);
     assert.ok(drawn > 0.03, `the car covers ${drawn} of the picture`);
     await tablet.screenshot('tablet');

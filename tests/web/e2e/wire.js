@@ -67,7 +67,10 @@ export class Wire {
 
   /** Waits for the picture after which none comes while nothing changes. */
   finest() {
-    return this.until('the finest picture', () => this.frames.at(-1)?.quality.samples === FINEST);
+    return this.until('the finest picture', () => {
+      const last = this.frames.at(-1);
+      return last?.quality.samples === FINEST && last;
+    });
   }
 
   /** Waits until no frame has come for a while. */
