@@ -46,7 +46,7 @@ std::string of_size(const char* what, int width, int height) {
     return what + (" of " + std::to_string(width)) + "x" + std::to_string(height);
 }
 
-GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes, GLbitfield flags) {
+GlBuffer make_storage(const char* what, const void* data, std::size_t bytes, GLbitfield flags) {
     GLuint name = 0;
     glCreateBuffers(1, &name);
     GlBuffer buffer(name);
@@ -91,16 +91,17 @@ void destroy_program(GLuint name) { glDeleteProgram(name); }
 }  // namespace detail
 
 GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes) {
-    return make_buffer(what, data, bytes, 0);
+    return make_storage(what, data, bytes, 0);
 }
 
 GlBuffer make_dynamic_buffer(const char* what, std::size_t bytes) {
-    return make_buffer(what, nullptr, bytes, GL_DYNAMIC_STORAGE_BIT);
+    return make_storage(what, nullptr, bytes, GL_DYNAMIC_STORAGE_BIT);
 }
 
 GlBuffer make_readback_buffer(const char* what, std::size_t bytes) {
-    return make_buffer(what, nullptr, bytes,
-                       GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT | GL_CLIENT_STORAGE_BIT);
+    return make_storage(
+        what, nullptr, bytes,
+        GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT | GL_CLIENT_STORAGE_BIT);
 }
 
 GlVertexArray make_vertex_array() {

@@ -10,11 +10,13 @@ struct ImportError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Returns true for a finite coordinate whose square stays in the range of float on the GPU, as in scene
-/// text.
+/// The square of such a coordinate stays in the range of float on the GPU.
+inline constexpr double kMaxCoordinate = 1e15;
+
+/// Returns true for a finite coordinate within kMaxCoordinate.
 template <class Number>
 bool is_coordinate(Number value) {
-    return std::abs(value) <= Number{1e15F};
+    return std::abs(value) <= static_cast<Number>(kMaxCoordinate);
 }
 
 }  // namespace vrut::io

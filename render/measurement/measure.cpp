@@ -18,7 +18,6 @@ namespace {
 /// In radians, 0.01 degrees: short edges of floats are off by more than rounding of doubles.
 constexpr double kParallelTolerance = 0.01 * std::numbers::pi / 180;
 constexpr double kCircleTolerance = 1e-6;  // of the radius, and of a right angle's cosine
-constexpr double kLeastSine = 1e-12;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 template <typename T>

@@ -8,9 +8,6 @@ namespace vrut::measurement {
 
 namespace {
 
-/// Points on a line, but for rounding.
-constexpr double kLeastSine = 1e-12;
-
 std::string_view phrase_of(Kind kind) {
     constexpr std::array<std::string_view, 5> kPhrases{"a distance", "a parallel distance", "an angle",
                                                        "a radius", "a length"};

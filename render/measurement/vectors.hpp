@@ -25,6 +25,9 @@ inline double sine(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::length(glm::cross(unit(a), unit(b)));
 }
 
+/// Of vectors whose angle's sine is no larger, all points are on one line, but for rounding.
+inline constexpr double kLeastSine = 1e-12;
+
 /// The length, of vectors whose square is beyond the range of double, too.
 inline double safe_length(const glm::dvec3& v) { return std::hypot(v.x, v.y, v.z); }
 

@@ -22,7 +22,7 @@ namespace {
 /// What it takes to plan a node that is shown, and its place among the others, in units of DrawBudget.
 constexpr std::int64_t kListed = 20, kOrdered = 20;
 
-bool is_flattened(double relative_determinant) { return !(std::abs(relative_determinant) > 1e-12); }
+bool flattens(double relative_determinant) { return !(std::abs(relative_determinant) > 1e-12); }
 
 /// Adds the item of a drawable node, unless it lies too far from the eye.
 void add_item(const scene::PlacedScene& placed, scene::Index node, const glm::dmat4& view,
@@ -43,7 +43,7 @@ void add_item(const scene::PlacedScene& placed, scene::Index node, const glm::dm
     item.view_from_node = view_from_node;
     const double determinant = scene::relative_determinant(glm::dmat3(item.view_from_node));
     const bool mirror = !style.override_material && mirror_plane(scene, item);
-    const bool both = is_flattened(determinant) || mirror || scene.material(item.material).two_sided;
+    const bool both = flattens(determinant) || mirror || scene.material(item.material).two_sided;
     item.cull_mode = both ? CullMode::none : CullMode::back;
     item.mirrored = determinant < 0;
 }
@@ -265,7 +265,7 @@ std::size_t triangle_count(const DrawItem& item, const scene::Scene& scene) {
 double marker_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
 
 bool is_flattened(const glm::dmat4& view_from_node) {
-    return is_flattened(scene::relative_determinant(glm::dmat3(view_from_node)));
+    return flattens(scene::relative_determinant(glm::dmat3(view_from_node)));
 }
 
 bool has_transparent(const DrawLists& lists) {

@@ -31,7 +31,7 @@ using Owned = std::unique_ptr<Type, LibavDeleter>;
 namespace {
 
 /// Those that need no device, the better one first.
-constexpr std::array kEncoders{"libx264", "mpeg4"};
+constexpr std::array kFilmEncoders{"libx264", "mpeg4"};
 
 /// How many there are decides about the bytes, so it is the same everywhere.
 constexpr int kThreads = 4;
@@ -74,7 +74,7 @@ Owned<AVCodecContext> open_encoder(const char* name, int width, int height, int 
 Owned<AVCodecContext> open_any_encoder(int width, int height, int images_per_second) {
     libav().av_log_set_level(AV_LOG_QUIET);  // what fails is thrown
     Owned<AVCodecContext> codec;
-    for (const char* name : kEncoders)
+    for (const char* name : kFilmEncoders)
         if (!codec) codec = open_encoder(name, width, height, images_per_second);
     return codec;
 }
@@ -105,7 +105,7 @@ void require_film_encoder(const fs::path& path) {
     const std::string otherwise = ", or name it " + path.stem().string() + ".png for numbered images";
     const auto has_encoder = [](const char* name) { return libav().avcodec_find_encoder_by_name(name); };
     try {
-        if (std::ranges::any_of(kEncoders, has_encoder)) return;
+        if (std::ranges::any_of(kFilmEncoders, has_encoder)) return;
     } catch (const std::exception& missing) {
         throw std::runtime_error(path.string() + ": " + missing.what() + "; install libavformat" +
                                  std::to_string(LIBAVFORMAT_VERSION_MAJOR) + " and libswscale" +

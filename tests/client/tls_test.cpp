@@ -34,7 +34,7 @@ using Key = Owned<EVP_PKEY, EVP_PKEY_free>;
 using X509Pointer = Owned<X509, X509_free>;
 
 /// A certificate and its key.
-struct Certificate {
+struct ServerCertificate {
     X509Pointer x509;
     Key key;
 };
@@ -52,8 +52,9 @@ void add_extension(X509* certificate, int kind, const std::string& value) {
 }
 
 /// Signed by `issuer`, or by itself, and then an authority.
-Certificate certificate_of(const CertificateOptions& options, const Certificate* issuer = nullptr) {
-    Certificate made{X509Pointer(X509_new()), Key(EVP_EC_gen("P-256"))};
+ServerCertificate certificate_of(const CertificateOptions& options,
+                                 const ServerCertificate* issuer = nullptr) {
+    ServerCertificate made{X509Pointer(X509_new()), Key(EVP_EC_gen("P-256"))};
     X509* const x509 = made.x509.get();
     X509_set_version(x509, X509_VERSION_3);
     static long serial = 0;
@@ -74,7 +75,7 @@ Certificate certificate_of(const CertificateOptions& options, const Certificate*
 /// Serves one client by TLS: sends `welcome` and `state`, and counts `shown`.
 class TlsServer {
 public:
-    explicit TlsServer(const Certificate& certificate, int newest_version = TLS1_3_VERSION) {
+    explicit TlsServer(const ServerCertificate& certificate, int newest_version = TLS1_3_VERSION) {
         SSL_CTX* const native = context_.native_handle();
         SSL_CTX_use_certificate(native, certificate.x509.get());
         SSL_CTX_use_PrivateKey(native, certificate.key.get());
@@ -120,7 +121,7 @@ private:
 
 /// An authority, and its certificate's file.
 struct Authority {
-    Certificate certificate = certificate_of({.names = "DNS:authority"});
+    ServerCertificate certificate = certificate_of({.names = "DNS:authority"});
     TemporaryFolder folder;
     std::string file = (folder.path() / "ca.pem").string();
     Authority() {
@@ -187,7 +188,7 @@ TEST_CASE("a host follows by TLS, having verified the server's name by an author
 
 TEST_CASE("a certificate may be one of an address, and TLS 1.2 is spoken") {
     const Authority authority;
-    const Certificate certificate = certificate_of({.names = "IP:127.0.0.1"}, &authority.certificate);
+    const ServerCertificate certificate = certificate_of({.names = "IP:127.0.0.1"}, &authority.certificate);
     for (const int version : {TLS1_3_VERSION, TLS1_2_VERSION}) {
         TlsServer server(certificate, version);
         CHECK(outcome_of(options_for(server.port(), {authority.file, ""})).connected);
@@ -197,12 +198,13 @@ TEST_CASE("a certificate may be one of an address, and TLS 1.2 is spoken") {
 
 TEST_CASE("a wrong certificate is refused in a sentence that tells what to do") {
     const Authority authority, other;
-    const auto check = [&](const Certificate& certificate, const client::Tls& tls, const std::string& why) {
+    const auto check = [&](const ServerCertificate& certificate, const client::Tls& tls,
+                           const std::string& why) {
         CAPTURE(why);
         TlsServer server(certificate);
         check_refused(outcome_of(options_for(server.port(), tls)), server.port(), why);
     };
-    const Certificate* const issuer = &authority.certificate;
+    const ServerCertificate* const issuer = &authority.certificate;
     check(certificate_of({.from = -2 * kDay, .until = -kDay}, issuer), {authority.file, kName},
           "its certificate has expired: renew it, or set the clock of this machine");
     check(certificate_of({.from = kDay, .until = 2 * kDay}, issuer), {authority.file, kName},

@@ -3,6 +3,7 @@
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
 
+#include "contains.hpp"
 #include "gltf_builder.hpp"
 #include "image_bytes.hpp"
 
@@ -12,10 +13,6 @@ namespace {
 
 using Points = std::vector<glm::dvec3>;
 const Points kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 /// Marks the last buffer view as compressed, of which it becomes the fallback that has no data.
 void compress(GltfBuilder& file, std::size_t count, std::size_t stride, const char* mode,

@@ -13,45 +13,45 @@ const std::string kKey = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
 const std::string kUpgrade =
     kHost + "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n";
 
-std::string get(const std::string& fields, const std::string& line = "GET /healthz HTTP/1.1") {
+std::string get_of(const std::string& fields, const std::string& line = "GET /healthz HTTP/1.1") {
     return line + "\r\n" + fields + "\r\n";
 }
 
-struct Case {
+struct RequestCase {
     std::string what, request;
     int status;
 };
 
-std::vector<Case> lines_and_bytes() {
+std::vector<RequestCase> lines_and_bytes() {
     const std::string nul(1, '\0');
     return {
         {"bare LF everywhere", "GET /healthz HTTP/1.1\nHost: 127.0.0.1\n\n", 400},
         {"bare LF behind the first line", "GET /healthz HTTP/1.1\n" + kHost + "\r\n", 400},
-        {"bare LF behind a field", get("Host: 127.0.0.1\nX: 1\r\n"), 400},
+        {"bare LF behind a field", get_of("Host: 127.0.0.1\nX: 1\r\n"), 400},
         {"bare LF at the end", "GET /healthz HTTP/1.1\r\n" + kHost + "\n", 400},
-        {"bare CR in a value", get(kHost + "X: a\rb\r\n"), 400},
+        {"bare CR in a value", get_of(kHost + "X: a\rb\r\n"), 400},
         {"bare CR behind the first line", "GET /healthz HTTP/1.1\r" + kHost + "\r\n", 400},
-        {"CR CR LF", get("Host: 127.0.0.1\r\r\n"), 400},
-        {"an empty line before the request", "\r\n" + get(kHost), 400},
-        {"a folded field", get(kHost + "X: a\r\n b\r\n"), 400},
-        {"a field folded by a tab", get(kHost + "X: a\r\n\tb\r\n"), 400},
-        {"a folded first field", get(" X: a\r\n" + kHost), 400},
-        {"a space before the colon", get("Host : 127.0.0.1\r\n"), 400},
-        {"a tab before the colon", get("Host\t: 127.0.0.1\r\n"), 400},
-        {"a field without a colon", get(kHost + "Nonsense\r\n"), 400},
-        {"a field without a name", get(kHost + ": 1\r\n"), 400},
-        {"a space in a field's name", get(kHost + "X Y: 1\r\n"), 400},
-        {"NUL in a value", get(kHost + "X: a" + nul + "b\r\n"), 400},
+        {"CR CR LF", get_of("Host: 127.0.0.1\r\r\n"), 400},
+        {"an empty line before the request", "\r\n" + get_of(kHost), 400},
+        {"a folded field", get_of(kHost + "X: a\r\n b\r\n"), 400},
+        {"a field folded by a tab", get_of(kHost + "X: a\r\n\tb\r\n"), 400},
+        {"a folded first field", get_of(" X: a\r\n" + kHost), 400},
+        {"a space before the colon", get_of("Host : 127.0.0.1\r\n"), 400},
+        {"a tab before the colon", get_of("Host\t: 127.0.0.1\r\n"), 400},
+        {"a field without a colon", get_of(kHost + "Nonsense\r\n"), 400},
+        {"a field without a name", get_of(kHost + ": 1\r\n"), 400},
+        {"a space in a field's name", get_of(kHost + "X Y: 1\r\n"), 400},
+        {"NUL in a value", get_of(kHost + "X: a" + nul + "b\r\n"), 400},
         {"NUL in the address", "GET /heal" + nul + "thz HTTP/1.1\r\n" + kHost + "\r\n", 400},
-        {"a bell in a value", get(kHost + "X: \a\r\n"), 400},
-        {"delete in a value", get(kHost + "X: \x7f\r\n"), 400},
-        {"a letter beyond ASCII in a name", get(kHost + "X\xc3\xa4: 1\r\n"), 400},
+        {"a bell in a value", get_of(kHost + "X: \a\r\n"), 400},
+        {"delete in a value", get_of(kHost + "X: \x7f\r\n"), 400},
+        {"a letter beyond ASCII in a name", get_of(kHost + "X\xc3\xa4: 1\r\n"), 400},
         {"what TLS begins with", "\x16\x03\x01\x02" + nul + "\x01", 400},
     };
 }
 
-std::vector<Case> first_lines() {
-    const auto line = [](const std::string& first) { return get(kHost, first); };
+std::vector<RequestCase> first_lines() {
+    const auto line = [](const std::string& first) { return get_of(kHost, first); };
     return {
         {"HTTP/0.9", "GET /healthz\r\n\r\n", 400},
         {"HTTP/2.0", line("GET /healthz HTTP/2.0"), 505},
@@ -79,64 +79,64 @@ std::vector<Case> first_lines() {
         {"TRACE", line("TRACE /healthz HTTP/1.1"), 405},
         {"a long address", line("GET /" + std::string(5000, 'x') + " HTTP/1.1"), 414},
         {"an address without end", "GET /" + std::string(9000, 'x'), 414},
-        {"a long field", get(kHost + "X: " + std::string(9000, 'x') + "\r\n"), 431},
+        {"a long field", get_of(kHost + "X: " + std::string(9000, 'x') + "\r\n"), 431},
         {"fields without end", "GET / HTTP/1.1\r\nX: " + std::string(9000, 'x'), 431},
     };
 }
 
-std::vector<Case> fields() {
+std::vector<RequestCase> fields() {
     const std::string smuggled = "0\r\n\r\nGET /metrics HTTP/1.1\r\n" + kHost + "\r\n";
     return {
-        {"no Host", get(""), 400},
-        {"two Hosts", get(kHost + "Host: evil.example\r\n"), 400},
-        {"the same Host twice", get(kHost + kHost), 400},
-        {"an empty Host", get("Host:\r\n"), 400},
-        {"a Host with a path", get("Host: 127.0.0.1/x\r\n"), 400},
-        {"a Host with a user", get("Host: me@127.0.0.1\r\n"), 400},
-        {"a Host that is a list", get("Host: 127.0.0.1, evil.example\r\n"), 400},
-        {"a Host that would end a policy", get("Host: 127.0.0.1;script-src\r\n"), 400},
-        {"a Host with a port of letters", get("Host: 127.0.0.1:http\r\n"), 400},
-        {"a Host with an empty port", get("Host: 127.0.0.1:\r\n"), 400},
-        {"a Host with an open bracket", get("Host: [::1\r\n"), 400},
-        {"two Origins", get(kHost + "Origin: http://127.0.0.1\r\nOrigin: http://evil.example\r\n"), 400},
-        {"two Authorizations", get(kHost + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n"), 400},
-        {"two lengths", get(kHost + "Content-Length: 0\r\nContent-Length: 3\r\n") + "abc", 400},
-        {"the same length twice", get(kHost + "Content-Length: 0\r\nContent-Length: 0\r\n"), 400},
-        {"a list of lengths", get(kHost + "Content-Length: 0, 0\r\n"), 400},
-        {"a signed length", get(kHost + "Content-Length: +0\r\n"), 400},
-        {"a length in hexadecimal", get(kHost + "Content-Length: 0x0\r\n"), 400},
-        {"an empty length", get(kHost + "Content-Length:\r\n"), 400},
-        {"a length beyond 64 bits", get(kHost + "Content-Length: 18446744073709551616\r\n"), 400},
-        {"length and coding", get(kHost + "Content-Length: 0\r\nTransfer-Encoding: chunked\r\n") + smuggled,
+        {"no Host", get_of(""), 400},
+        {"two Hosts", get_of(kHost + "Host: evil.example\r\n"), 400},
+        {"the same Host twice", get_of(kHost + kHost), 400},
+        {"an empty Host", get_of("Host:\r\n"), 400},
+        {"a Host with a path", get_of("Host: 127.0.0.1/x\r\n"), 400},
+        {"a Host with a user", get_of("Host: me@127.0.0.1\r\n"), 400},
+        {"a Host that is a list", get_of("Host: 127.0.0.1, evil.example\r\n"), 400},
+        {"a Host that would end a policy", get_of("Host: 127.0.0.1;script-src\r\n"), 400},
+        {"a Host with a port of letters", get_of("Host: 127.0.0.1:http\r\n"), 400},
+        {"a Host with an empty port", get_of("Host: 127.0.0.1:\r\n"), 400},
+        {"a Host with an open bracket", get_of("Host: [::1\r\n"), 400},
+        {"two Origins", get_of(kHost + "Origin: http://127.0.0.1\r\nOrigin: http://evil.example\r\n"), 400},
+        {"two Authorizations", get_of(kHost + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n"), 400},
+        {"two lengths", get_of(kHost + "Content-Length: 0\r\nContent-Length: 3\r\n") + "abc", 400},
+        {"the same length twice", get_of(kHost + "Content-Length: 0\r\nContent-Length: 0\r\n"), 400},
+        {"a list of lengths", get_of(kHost + "Content-Length: 0, 0\r\n"), 400},
+        {"a signed length", get_of(kHost + "Content-Length: +0\r\n"), 400},
+        {"a length in hexadecimal", get_of(kHost + "Content-Length: 0x0\r\n"), 400},
+        {"an empty length", get_of(kHost + "Content-Length:\r\n"), 400},
+        {"a length beyond 64 bits", get_of(kHost + "Content-Length: 18446744073709551616\r\n"), 400},
+        {"length and coding",
+         get_of(kHost + "Content-Length: 0\r\nTransfer-Encoding: chunked\r\n") + smuggled, 400},
+        {"coding and length",
+         get_of(kHost + "Transfer-Encoding: chunked\r\nContent-Length: 5\r\n") + smuggled, 400},
+        {"a coding", get_of(kHost + "Transfer-Encoding: chunked\r\n") + smuggled, 501},
+        {"a coding's look-alike", get_of(kHost + "Transfer-Encoding: xchunked\r\n") + smuggled, 501},
+        {"the coding of none", get_of(kHost + "Transfer-Encoding: identity\r\n"), 501},
+        {"two codings", get_of(kHost + "Transfer-Encoding: chunked\r\nTransfer-Encoding: x\r\n") + smuggled,
          400},
-        {"coding and length", get(kHost + "Transfer-Encoding: chunked\r\nContent-Length: 5\r\n") + smuggled,
-         400},
-        {"a coding", get(kHost + "Transfer-Encoding: chunked\r\n") + smuggled, 501},
-        {"a coding's look-alike", get(kHost + "Transfer-Encoding: xchunked\r\n") + smuggled, 501},
-        {"the coding of none", get(kHost + "Transfer-Encoding: identity\r\n"), 501},
-        {"two codings", get(kHost + "Transfer-Encoding: chunked\r\nTransfer-Encoding: x\r\n") + smuggled,
-         400},
-        {"a coding in HTTP/1.0", get(kHost + "Transfer-Encoding: chunked\r\n", "GET / HTTP/1.0") + smuggled,
-         400},
-        {"a body", get(kHost + "Content-Length: 3\r\n") + "abc", 413},
-        {"a body to POST", get(kHost + "Content-Length: 3\r\n", "POST /healthz HTTP/1.1") + "abc", 405},
-        {"a huge body", get(kHost + "Content-Length: 9999999999\r\n"), 413},
-        {"an expectation", get(kHost + "Expect: 100-continue\r\n"), 417},
+        {"a coding in HTTP/1.0",
+         get_of(kHost + "Transfer-Encoding: chunked\r\n", "GET / HTTP/1.0") + smuggled, 400},
+        {"a body", get_of(kHost + "Content-Length: 3\r\n") + "abc", 413},
+        {"a body to POST", get_of(kHost + "Content-Length: 3\r\n", "POST /healthz HTTP/1.1") + "abc", 405},
+        {"a huge body", get_of(kHost + "Content-Length: 9999999999\r\n"), 413},
+        {"an expectation", get_of(kHost + "Expect: 100-continue\r\n"), 417},
     };
 }
 
-std::vector<Case> handshakes() {
+std::vector<RequestCase> handshakes() {
     const std::string line = "GET /ws HTTP/1.1";
     return {
-        {"two keys", get(kUpgrade + kKey + kKey, line), 400},
-        {"a short key", get(kUpgrade + "Sec-WebSocket-Key: dGhl\r\n", line), 400},
-        {"a key that is no base64", get(kUpgrade + "Sec-WebSocket-Key: !!!!!!!!!!!!!!!!!!!!!!==\r\n", line),
-         400},
-        {"two versions", get(kUpgrade + kKey + "Sec-WebSocket-Version: 13\r\n", line), 400},
-        {"bytes before the answer", get(kUpgrade + kKey, line) + "\x81\x80 ", 400},
-        {"a body", get(kUpgrade + kKey + "Content-Length: 2\r\n", line) + "ab", 413},
-        {"an expectation", get(kUpgrade + kKey + "Expect: 100-continue\r\n", line), 417},
-        {"another method", get(kUpgrade + kKey, "POST /ws HTTP/1.1"), 405},
+        {"two keys", get_of(kUpgrade + kKey + kKey, line), 400},
+        {"a short key", get_of(kUpgrade + "Sec-WebSocket-Key: dGhl\r\n", line), 400},
+        {"a key that is no base64",
+         get_of(kUpgrade + "Sec-WebSocket-Key: !!!!!!!!!!!!!!!!!!!!!!==\r\n", line), 400},
+        {"two versions", get_of(kUpgrade + kKey + "Sec-WebSocket-Version: 13\r\n", line), 400},
+        {"bytes before the answer", get_of(kUpgrade + kKey, line) + "\x81\x80 ", 400},
+        {"a body", get_of(kUpgrade + kKey + "Content-Length: 2\r\n", line) + "ab", 413},
+        {"an expectation", get_of(kUpgrade + kKey + "Expect: 100-continue\r\n", line), 417},
+        {"another method", get_of(kUpgrade + kKey, "POST /ws HTTP/1.1"), 405},
     };
 }
 
@@ -145,7 +145,7 @@ std::vector<Case> handshakes() {
 TEST_CASE("what cannot be trusted is refused with a sentence, and nothing behind it is answered") {
     TestServer server;
     for (const auto& cases : {lines_and_bytes(), first_lines(), fields(), handshakes()})
-        for (const Case& each : cases) {
+        for (const RequestCase& each : cases) {
             CAPTURE(each.what);
             RawConnection connection(server.port());
             connection.send(each.request);
@@ -162,24 +162,25 @@ TEST_CASE("what cannot be trusted is refused with a sentence, and nothing behind
 
 TEST_CASE("what is unusual and right is served") {
     TestServer server;
-    for (const Case& each : std::vector<Case>{
-             {"no space behind the colon", get("Host:127.0.0.1\r\n"), 200},
-             {"a tab around a value", get("Host:\t127.0.0.1 \t\r\n"), 200},
-             {"names in any letters", get("hOST: 127.0.0.1\r\n"), 200},
-             {"a length of zero", get(kHost + "Content-Length: 0\r\n"), 200},
-             {"an empty value", get(kHost + "X:\r\n"), 200},
-             {"letters beyond ASCII in a value", get(kHost + "X: \xc3\xa4\r\n"), 200},
-             {"a field twice that may be", get(kHost + "Accept: a\r\nAccept: b\r\n"), 200},
-             {"IPv6", get("Host: [::1]:8080\r\n"), 200},
-             {"a query", get(kHost, "GET /healthz?a=b&c=%20 HTTP/1.1"), 200},
-             {"HTTP/1.0", get(kHost, "GET /healthz HTTP/1.0"), 200},
-             {"an address of 4000 bytes", get(kHost, "GET /" + std::string(4000, 'x') + " HTTP/1.1"), 404},
-             {"a WebSocket that is none", get(kHost, "GET /ws HTTP/1.1"), 426},
+    for (const RequestCase& each : std::vector<RequestCase>{
+             {"no space behind the colon", get_of("Host:127.0.0.1\r\n"), 200},
+             {"a tab around a value", get_of("Host:\t127.0.0.1 \t\r\n"), 200},
+             {"names in any letters", get_of("hOST: 127.0.0.1\r\n"), 200},
+             {"a length of zero", get_of(kHost + "Content-Length: 0\r\n"), 200},
+             {"an empty value", get_of(kHost + "X:\r\n"), 200},
+             {"letters beyond ASCII in a value", get_of(kHost + "X: \xc3\xa4\r\n"), 200},
+             {"a field twice that may be", get_of(kHost + "Accept: a\r\nAccept: b\r\n"), 200},
+             {"IPv6", get_of("Host: [::1]:8080\r\n"), 200},
+             {"a query", get_of(kHost, "GET /healthz?a=b&c=%20 HTTP/1.1"), 200},
+             {"HTTP/1.0", get_of(kHost, "GET /healthz HTTP/1.0"), 200},
+             {"an address of 4000 bytes", get_of(kHost, "GET /" + std::string(4000, 'x') + " HTTP/1.1"), 404},
+             {"a WebSocket that is none", get_of(kHost, "GET /ws HTTP/1.1"), 426},
              {"a WebSocket of another version",
-              get(kHost + kKey + "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 8\r\n",
+              get_of(
+                  kHost + kKey + "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 8\r\n",
                   "GET /ws HTTP/1.1"),
               426},
-             {"a WebSocket", get(kUpgrade + kKey, "GET /ws HTTP/1.1"), 101}}) {
+             {"a WebSocket", get_of(kUpgrade + kKey, "GET /ws HTTP/1.1"), 101}}) {
         CAPTURE(each.what);
         RawConnection connection(server.port());
         connection.send(each.request);
@@ -190,8 +191,8 @@ TEST_CASE("what is unusual and right is served") {
 TEST_CASE("requests that come together are answered in order, up to one that cannot be trusted") {
     TestServer server;
     RawConnection connection(server.port());
-    connection.send(get(kHost) + get(kHost, "HEAD / HTTP/1.1") + get(kHost, "GET /none HTTP/1.1") +
-                    get(kHost, "GET /style.css HTTP/1.1") + get("") + get(kHost));
+    connection.send(get_of(kHost) + get_of(kHost, "HEAD / HTTP/1.1") + get_of(kHost, "GET /none HTTP/1.1") +
+                    get_of(kHost, "GET /style.css HTTP/1.1") + get_of("") + get_of(kHost));
     CHECK(connection.answer().body == "ok\n");
     const HttpAnswer head = connection.answer(true);
     CHECK(head.status == 200);
@@ -206,9 +207,9 @@ TEST_CASE("requests that come together are answered in order, up to one that can
 TEST_CASE("a request that comes byte by byte is one, and a connection is closed when that is asked for") {
     TestServer server;
     RawConnection connection(server.port());
-    for (const char byte : get(kHost)) connection.send({&byte, 1});
+    for (const char byte : get_of(kHost)) connection.send({&byte, 1});
     CHECK(connection.answer().status == 200);
-    connection.send(get(kHost + "Connection: close\r\n") + get(kHost));
+    connection.send(get_of(kHost + "Connection: close\r\n") + get_of(kHost));
     CHECK(connection.answer().headers.find("Connection: close\r\n") != std::string::npos);
     CHECK(connection.answer().status == 0);
     CHECK(connection.ended());

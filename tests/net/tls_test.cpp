@@ -41,7 +41,7 @@ int verdict(const CertificateAuthority& authority, X509* certificate) {
     return X509_STORE_CTX_get_error(context.get());
 }
 
-ServerOptions with(Deadlines deadlines) {
+ServerOptions with_tls_within(Deadlines deadlines) {
     ServerOptions options = with_tls();
     options.deadlines = deadlines;
     return options;
@@ -65,7 +65,7 @@ struct Handshake {
     bool succeeds = false;
 };
 
-const std::string kGet = "GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+const std::string kGetHealth = "GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
 
 }  // namespace
 
@@ -181,7 +181,7 @@ TEST_CASE("page, WebSocket and streaming by TLS, and plain HTTP for this machine
     RawConnection secure(server.port(), Over::tls), plain(server.port());
     for (RawConnection* connection : {&secure, &plain})
         for (int i = 0; i < 2; ++i) {  // and the connection is kept
-            connection->send(kGet);
+            connection->send(kGetHealth);
             CHECK(connection->answer().body == "ok\n");
         }
     // What does not fit into a record of TLS.
@@ -284,7 +284,7 @@ TEST_CASE("old versions, renegotiation and bytes that are no TLS end a connectio
 
 TEST_CASE(
     "handshakes and records that do not come to their end are cut at the deadlines of what they carry") {
-    TestServer server({}, with({.request = 1s, .message = 1s}));
+    TestServer server({}, with_tls_within({.request = 1s, .message = 1s}));
     RawWebSocket client(server.port(), {}, Over::tls), patient(server.port(), {}, Over::tls);
     for (RawWebSocket* each : {&client, &patient}) each->join();
     RawConnection silent(server.port()), first(server.port()), half(server.port());

@@ -10,8 +10,6 @@ using namespace vrut;
 
 namespace {
 
-const scene::Material kPaint = material_of({0.7, 0.5, 0.3});
-
 std::size_t planned(plan::View view, const scene::Geometry& geometry,
                     const glm::dmat4& matrix = glm::dmat4(1)) {
     view.scene = scene_of({{1, geometry, kPaint, matrix}});

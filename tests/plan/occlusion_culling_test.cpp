@@ -11,8 +11,6 @@ using namespace vrut;
 
 namespace {
 
-const scene::Material kPaint = material_of({0.7, 0.5, 0.3});
-
 plan::View view_of(const std::vector<Part>& parts, const glm::dvec3& eye) {
     plan::View view = view_from(eye);
     view.scene = scene_of(parts);

@@ -12,7 +12,6 @@ using namespace vrut;
 
 namespace {
 
-const scene::Material kPaint = material_of({0.7, 0.5, 0.3});
 const scene::ClipPlane kAboveFront{{0, 0, 1}, 0.25};
 
 /// A box at the origin, one before it, one behind it, and a sheet across.

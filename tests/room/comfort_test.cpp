@@ -27,9 +27,9 @@ json for_hosts(Room& room) {
 }
 
 /// Lines that a server would write, and the room after them.
-class Recorded {
+class RecordedWalls {
 public:
-    Recorded() : stage("", in_metres(), options()) {}
+    RecordedWalls() : stage("", in_metres(), options()) {}
 
     /// A room to which the same lines came, with no calls of advance() between.
     Room replayed() {
@@ -215,7 +215,7 @@ TEST_CASE("hosts' updates lead from what they have to what they get") {
 }
 
 TEST_CASE("how hosts follow is the same however often the room is advanced, and in a replay") {
-    Recorded recorded;
+    RecordedWalls recorded;
     Stage& stage = recorded.stage;
     stage.now = 3ms;
     stage.join('a');

@@ -81,7 +81,7 @@ private:
     int id_ = 0;
 };
 
-const json kStart = {
+const json kStartState = {
     {"camera",
      {{"eye", {0, 0, 30}}, {"focus", {0, 0, 0}}, {"up", {0, 1, 0}}, {"center", {0, 0, 0}}, {"fov", 45}}},
     {"navigation", {{"turnAbout", "touched"}}}};
@@ -90,7 +90,7 @@ const json kTouched = {2.25, 0.75, -13.5};
 void check_burst(const std::vector<json>& messages) {
     std::vector<std::vector<json>> one_by_one;
     for (const json& message : messages) one_by_one.push_back({message});
-    const Session walk(kStart, one_by_one), burst(kStart, {messages});
+    const Session walk(kStartState, one_by_one), burst(kStartState, {messages});
     CHECK(burst.camera() == walk.camera());
     CHECK(walk.replayed_camera() == walk.camera());
     CHECK(burst.replayed_camera() == walk.camera());
@@ -162,7 +162,7 @@ TEST_CASE("fingers that move at random lead to one camera, however their message
             if (below(4) == 0) batches.emplace_back();
             batches.back().push_back(message);
         }
-        const Session walk(kStart, one_by_one), bursts(kStart, batches);
+        const Session walk(kStartState, one_by_one), bursts(kStartState, batches);
         CHECK(bursts.camera() == walk.camera());
         CHECK(bursts.replayed_camera() == walk.camera());
     }

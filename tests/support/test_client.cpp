@@ -24,7 +24,6 @@ namespace vrut::test {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace websocket = beast::websocket;
 using asio::ip::tcp;
 
 namespace {
@@ -121,9 +120,9 @@ std::chrono::milliseconds TestServer::stop() {
 
 struct TestClient::Impl {
     asio::io_context context{1};
-    websocket::stream<tcp::socket> socket{context};
+    beast::websocket::stream<tcp::socket> socket{context};
     beast::flat_buffer buffer;
-    websocket::response_type response;
+    beast::websocket::response_type response;
     bool reading = false, arrived = false, ended = false;
     beast::error_code error;
 };
@@ -135,11 +134,12 @@ TestClient::TestClient(std::uint16_t port, const ConnectOptions& options) : impl
         tcp_socket.set_option(asio::socket_base::receive_buffer_size(options.receive_buffer));
     tcp_socket.connect({asio::ip::make_address("127.0.0.1"), port});
     tcp_socket.set_option(tcp::no_delay(true));
-    impl_->socket.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
-        if (!options.subprotocol.empty())
-            request.set(beast::http::field::sec_websocket_protocol, options.subprotocol);
-        if (!options.origin.empty()) request.set(beast::http::field::origin, options.origin);
-    }));
+    impl_->socket.set_option(
+        beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
+            if (!options.subprotocol.empty())
+                request.set(beast::http::field::sec_websocket_protocol, options.subprotocol);
+            if (!options.origin.empty()) request.set(beast::http::field::origin, options.origin);
+        }));
     impl_->socket.read_message_max(std::size_t{1} << 28);
     const std::string host = options.host.empty() ? "127.0.0.1:" + std::to_string(port) : options.host;
     beast::error_code refused;

@@ -12,7 +12,12 @@ namespace vrut::gl {
 
 namespace {
 
-enum MarkerUniform : GLint { clip_from_view_at = 0, radius_at = 1, judged_at = 2, color_at = 3 };
+enum MarkerUniform : GLint {
+    marker_clip_at = 0,
+    marker_radius_at = 1,
+    marker_judged_at = 2,
+    marker_color_at = 3
+};
 
 constexpr std::size_t kBatch = 256;  // the shader's
 constexpr GLuint kPointsBinding = 1;
@@ -38,11 +43,11 @@ void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const
     programs_.use(FixedProgram::marker);
     glBindVertexArray(empty_vertex_array_.get());
     const glm::mat4 clip(clip_from_view);
-    glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
-    glUniform1f(radius_at, static_cast<float>(plan::marker_radius(target.height())));
-    glUniform1i(judged_at, fade == MarkerFade::by_depth);
+    glUniformMatrix4fv(marker_clip_at, 1, GL_FALSE, glm::value_ptr(clip));
+    glUniform1f(marker_radius_at, static_cast<float>(plan::marker_radius(target.height())));
+    glUniform1i(marker_judged_at, fade == MarkerFade::by_depth);
     const glm::vec3 color(scene::kMarkerColor);
-    glUniform3fv(color_at, 1, glm::value_ptr(color));
+    glUniform3fv(marker_color_at, 1, glm::value_ptr(color));
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
         const std::size_t count = std::min(points.size() - first, kBatch);
         std::array<glm::vec4, kBatch> batch{};

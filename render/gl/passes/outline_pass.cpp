@@ -10,7 +10,7 @@ namespace vrut::gl {
 
 namespace {
 
-enum OutlineUniform : GLint { width_at = 0, color_at = 1, box_at = 2 };
+enum OutlineUniform : GLint { outline_width_at = 0, outline_color_at = 1, outline_box_at = 2 };
 
 GlFramebuffer make_target(const GlTexture& texture) {
     GlFramebuffer framebuffer = make_framebuffer();
@@ -29,8 +29,8 @@ PipelineState over_everything() {
 void use(Programs& programs, FixedProgram program, int width, const math::PixelBox& box,
          const GlTexture& texture) {
     programs.use(program);
-    glUniform1i(width_at, width);
-    glUniform4i(box_at, box.low.x, box.low.y, box.high.x, box.high.y);
+    glUniform1i(outline_width_at, width);
+    glUniform4i(outline_box_at, box.low.x, box.low.y, box.high.x, box.high.y);
     glBindTextureUnit(0, texture.get());
 }
 
@@ -111,7 +111,7 @@ void OutlinePass::draw(const Framebuffer& target, plan::FrameStats& stats) {
     target.bind();
     use(programs_, FixedProgram::outline, width, box_, mask_->across);
     const glm::vec3 color(scene::kSelection);
-    glUniform3fv(color_at, 1, glm::value_ptr(color));
+    glUniform3fv(outline_color_at, 1, glm::value_ptr(color));
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindTextureUnit(0, 0);
     set_scissor({});

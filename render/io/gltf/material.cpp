@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kVisible = 0.5 / 255;  // what rounds to the same byte is the same
 constexpr double kSharpest = 10'000;    // Phong's exponent, which is what the reader gives smoother ones
-constexpr const char* kClamped = "a colour above 1 is clamped to 1";
+constexpr const char* kColorClamped = "a colour above 1 is clamped to 1";
 
 glm::dvec3 linear(const glm::dvec3& displayed) {
     return base::linear_from_srgb(glm::clamp(displayed, 0.0, 1.0));
@@ -85,7 +85,7 @@ void report_lost_phong(const scene::Material& from, const glm::dvec3& c, Convers
     if (largest(emission) > kVisible &&
         (largest(glm::dvec3(from.diffuse)) > kVisible || from.emissive_texture != scene::kNone))
         warnings.add("a material's emission becomes light, which brightens less what is lit");
-    if (largest(emission) > 1) warnings.add(kClamped);
+    if (largest(emission) > 1) warnings.add(kColorClamped);
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& fro
     material.emissive = emissive / material.emissive_strength;
     if (has_texture && largest(diffuse - c) > kVisible)
         warnings.add("the diffuse colour of a textured material becomes white");
-    if (largest(diffuse) > 1) warnings.add(kClamped);
+    if (largest(diffuse) > 1) warnings.add(kColorClamped);
     if (from.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     return material;
 }

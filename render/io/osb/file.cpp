@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "base/utf8.hpp"
+#include "io/import_checks.hpp"
 #include "io/vrut/tokenizer.hpp"
 
 namespace vrut::io {
@@ -13,7 +14,6 @@ namespace vrut::io {
 namespace {
 
 // As for scene text: beyond this, coordinates would leave the range of float when squared on the GPU.
-constexpr double kMaxCoordinate = 1e15;
 
 // Of a container, and attachments looked at: far more than OpenSG's own have, and a search stays short.
 constexpr std::size_t kMostFields = 256;

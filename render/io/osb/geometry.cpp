@@ -75,7 +75,14 @@ IndexMapping mapping_of(const OsbContainer& container) {
     return mapping;
 }
 
-enum GlPrimitive { kTriangles = 4, kStrip = 5, kFan = 6, kQuads = 7, kQuadStrip = 8, kPolygon = 9 };
+enum GlPrimitive {
+    kTriangles = 4,
+    kTriangleStrip = 5,
+    kTriangleFan = 6,
+    kQuads = 7,
+    kQuadStrip = 8,
+    kPolygon = 9
+};
 
 class OsbGeometryBuilder {
 public:
@@ -165,7 +172,7 @@ private:
             for (std::size_t i = 0; i + 4 <= length; i += 2) quad(i, i + 1, i + 3, i + 2);
         else
             for (std::size_t i = 0; i + 3 <= length; ++i)
-                if (type == kStrip)
+                if (type == kTriangleStrip)
                     triangle(i + i % 2, i + 1 - i % 2, i + 2);
                 else
                     triangle(0, i + 1, i + 2);

@@ -9,6 +9,7 @@
 
 #include "base/file_bytes.hpp"
 #include "base/salted_hash.hpp"
+#include "io/import_checks.hpp"
 #include "io/notices.hpp"
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
@@ -19,7 +20,6 @@ namespace vrut::io {
 namespace {
 
 // Coordinates beyond this would leave the range of float when squared on the GPU.
-constexpr double kMaxCoordinate = 1e15;
 constexpr double kMaxColor = 1e6;
 constexpr double kMaxScale = 1e6;
 
