@@ -57,11 +57,11 @@ require_space() { # FOLDER MEGABYTES PURPOSE
     [ "$free" -ge "$2" ] || die "$3 needs about $2 MB, but the disk of $1 has $free MB free: make room and start again."
 }
 
-# How many compilers at once: one a core, but no more than the memory holds (the largest take over a gigabyte).
+# How many compilers at once: one a core, but no more than the memory holds (the largest take 1.7 gigabytes).
 parallel_jobs() {
     local cores room
     cores=$(nproc)
-    room=$(awk '/^MemAvailable:/ { print int($2 / 1300000) }' /proc/meminfo 2>/dev/null || true)
+    room=$(awk '/^MemAvailable:/ { print int($2 / 1700000) }' /proc/meminfo 2>/dev/null || true)
     if [ -n "$room" ] && [ "$room" -lt "$cores" ]; then cores=$((room > 0 ? room : 1)); fi
     echo "$cores"
 }
