@@ -110,9 +110,10 @@ build() { # PRESET CMAKE-BUILD-ARGUMENTS...
     NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build --preset "$1" --parallel "$jobs" "${@:2}"
 }
 
+# One more at a time than there are cores: some wait for deadlines most of their time.
 tests() { # PRESET CTEST-ARGUMENTS...
     local status=0
-    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" </dev/null || status=$?
+    ctest --preset "$1" --parallel "$(($(nproc) + 1))" --no-tests=error "${@:2}" </dev/null || status=$?
     # Of whole tests that are skipped, and of cases of those that are not.
     awk -v preset="$1" '/^[0-9]+\/[0-9]+ Testing: / { name = $3 }
         /(^|MESSAGE: )skipped/ { print "  " preset ", " name ": " $0 }
