@@ -12,7 +12,7 @@ namespace {
 
 std::size_t planned(plan::View view, const scene::Geometry& geometry,
                     const glm::dmat4& matrix = glm::dmat4(1)) {
-    view.scene = scene_of({{1, geometry, kPaint, matrix}});
+    view.scene = scene_of({{1, geometry, kBronze, matrix}});
     return plan::plan_frame(view).scene.opaque.size();
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("what shows is planned: random parts, from within and from near") {
         plan::View view = view_from(dice.vector(5), dice.vector(5));
         view.camera.fov = dice.between(5, 150);
         view.width = static_cast<int>(dice.between(1, 200));
-        view.scene = scene_of(random_parts(dice, kPaint));
+        view.scene = scene_of(random_parts(dice, kBronze));
         std::vector<bool> found(view.scene->nodes.size());
         for (const plan::DrawItem& item : plan::plan_frame(view).scene.opaque)
             found[static_cast<std::size_t>(item.node)] = true;

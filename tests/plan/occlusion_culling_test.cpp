@@ -36,7 +36,7 @@ std::vector<scene::Index> nodes_of(const std::vector<plan::DrawItem>& items) {
 std::vector<Part> balls(int count) {
     std::vector<Part> parts;
     for (int i = 0; i < count; ++i)
-        parts.push_back({i + 1, sphere(0.1, 20), kPaint, moved_by({0.3 * i, 0, 0})});
+        parts.push_back({i + 1, sphere(0.1, 20), kBronze, moved_by({0.3 * i, 0, 0})});
     return parts;
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("where the eye jumps, all items are drawn and queried again") {
 
 TEST_CASE("small items, and those that cover many pixels for their triangles, are never queried") {
     std::vector<Part> parts = balls(1);
-    parts.push_back({2, sphere(0.1, 8), kPaint, moved_by({0.5, 0, 0})});
+    parts.push_back({2, sphere(0.1, 8), kBronze, moved_by({0.5, 0, 0})});
     plan::View view = view_of(parts, {0, 0, 5});
     plan::OcclusionHistory history = history_of(view);
     plan_of(view, history);
@@ -148,7 +148,7 @@ TEST_CASE("faces are culled in realistic images only, and not by frustum culling
 
 TEST_CASE("a box holds its item, turned, mirrored, sheared or flattened, and some more") {
     Dice dice(5);
-    std::vector<Part> parts = random_parts(dice, kPaint);
+    std::vector<Part> parts = random_parts(dice, kBronze);
     for (Part& part : parts) part.matrix = moved_by({0, 0, -30}) * part.matrix;
     parts[0].matrix *= scaled_by({1, 0, 1});
     parts[1].matrix *= scaled_by({1, 0, 0});
@@ -180,9 +180,9 @@ TEST_CASE("a box holds its item, turned, mirrored, sheared or flattened, and som
 TEST_CASE("what surrounds the eye, lies behind it or comes close to it has no box") {
     for (const glm::dvec3& place :
          {glm::dvec3(0), glm::dvec3(0, 0, 1.5), glm::dvec3(0, 0, -1.01), glm::dvec3(1.5, 0, 0)}) {
-        const plan::View view = view_of({{1, sphere(1, 20), kPaint, moved_by(place)}}, {0, 0, 0.001});
+        const plan::View view = view_of({{1, sphere(1, 20), kBronze, moved_by(place)}}, {0, 0, 0.001});
         CHECK_FALSE(plan::occlusion_box(plan::visible_items(view)[0], view));
     }
-    const plan::View view = view_of({{1, sphere(1, 20), kPaint, moved_by({0, 0, -1.2})}}, {0, 0, 0.001});
+    const plan::View view = view_of({{1, sphere(1, 20), kBronze, moved_by({0, 0, -1.2})}}, {0, 0, 0.001});
     CHECK(plan::occlusion_box(plan::visible_items(view)[0], view));
 }

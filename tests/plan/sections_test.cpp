@@ -16,10 +16,10 @@ const scene::ClipPlane kAboveFront{{0, 0, 1}, 0.25};
 
 /// A box at the origin, one before it, one behind it, and a sheet across.
 std::shared_ptr<const scene::PlacedScene> four_parts() {
-    return scene_of({{1, box({0.5, 0.5, 0.5}), kPaint},
-                     {2, box({0.1, 0.1, 0.1}), kPaint, moved_by({0, 0, 2})},
-                     {3, box({0.1, 0.1, 0.1}), kPaint, moved_by({0, 0, -2})},
-                     {4, quad(1), kPaint, turned_by(90, {0, 1, 0})}});
+    return scene_of({{1, box({0.5, 0.5, 0.5}), kBronze},
+                     {2, box({0.1, 0.1, 0.1}), kBronze, moved_by({0, 0, 2})},
+                     {3, box({0.1, 0.1, 0.1}), kBronze, moved_by({0, 0, -2})},
+                     {4, quad(1), kBronze, turned_by(90, {0, 1, 0})}});
 }
 
 plan::View view_of(std::shared_ptr<const scene::PlacedScene> scene, std::vector<scene::ClipPlane> planes) {

@@ -27,7 +27,7 @@ std::shared_ptr<const scene::PlacedScene> coincident_scene(const scene::Geometry
 
 scene::Material material_of(const glm::dvec3& diffuse, const glm::dvec3& specular = glm::dvec3(0),
                             double shininess = 0);
-inline const scene::Material kPaint = material_of({0.7, 0.5, 0.3});
+inline const scene::Material kBronze = material_of({0.7, 0.5, 0.3});
 
 /// In the plane z = 0, facing +z, from -half to half; `normals` are all +z.
 scene::Geometry quad(double half, bool normals = true);
