@@ -110,10 +110,9 @@ build() { # PRESET CMAKE-BUILD-ARGUMENTS...
     NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build --preset "$1" --parallel "$jobs" "${@:2}"
 }
 
-# One more at a time than there are cores: some wait for deadlines most of their time.
 tests() { # PRESET CTEST-ARGUMENTS...
     local status=0
-    ctest --preset "$1" --parallel "$(($(nproc) + 1))" --no-tests=error "${@:2}" </dev/null || status=$?
+    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" </dev/null || status=$?
     # Of whole tests that are skipped, and of cases of those that are not.
     awk -v preset="$1" '/^[0-9]+\/[0-9]+ Testing: / { name = $3 }
         /(^|MESSAGE: )skipped/ { print "  " preset ", " name ": " $0 }
@@ -197,7 +196,8 @@ step "configuration" "CMake's message is above." configured release
 step "programs that tests start" "Do what is said above." node tests/programs.mjs build/release
 if $default; then
     step "build of the tests" "$compile_remedy" build release --target default_tests
-    step "tests" "Again alone: ctest --preset release -R NAME." tests release -L "^($default_labels)\$"
+    # One more at a time than there are cores: some wait for deadlines most of their time.
+    step "tests" "Again alone: ctest --preset release -R NAME." tests release -L "^($default_labels)\$" --parallel "$(($(nproc) + 1))"
 fi
 if $ci; then
     step "build release" "$compile_remedy" build release

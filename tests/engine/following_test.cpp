@@ -45,7 +45,7 @@ private:
         options.scene = scene_of(
             "vrut-text 1\ngeometry 1 vertices 3 -1 -1 0  1 -1 0  0 1 1 triangles 1 0 1 2 end\n"
             "node 1 \"Triangle\" geometry geometry 1 end\n");
-        options.shared.emplace([](const auto&) {}, [](const auto&) {}, [](const auto&) {});
+        options.shared = SharedHooks{[](const auto&) {}, [](const auto&) {}, [](const auto&) {}};
         return options;
     }
     void take(std::shared_ptr<const EncodedPicture> picture) {
