@@ -10,11 +10,11 @@ namespace vrut::gl {
 
 namespace {
 
-constexpr std::size_t kObjectBytes = 4096;  // about what the driver takes for the objects of a cut
+constexpr std::size_t kCutBytes = 4096;  // about what the driver takes for the objects of a cut
 
 std::size_t bytes_of(const plan::CutSurface& surface) {
     const mesh::Cut& cut = surface.cut;
-    return kObjectBytes + cut.points.size() * sizeof(GpuVertex) + cut.triangles.size() * sizeof(glm::uvec3) +
+    return kCutBytes + cut.points.size() * sizeof(GpuVertex) + cut.triangles.size() * sizeof(glm::uvec3) +
            (cut.contours.size() + cut.hatching.size()) * sizeof(glm::uvec2);
 }
 

@@ -26,7 +26,7 @@ enum ResolveUniform : GLint {
     subsampled_at = 4
 };
 
-constexpr GLuint64 kPatience = 1'000'000;  // ns
+constexpr GLuint64 kWaitNanoseconds = 1'000'000;  // ns
 
 /// What holds the samples that are resolved.
 struct Source {
@@ -86,7 +86,7 @@ public:
     }
     /// Waits for a millisecond at most.
     bool is_read() const {
-        return glClientWaitSync(fence_, GL_SYNC_FLUSH_COMMANDS_BIT, kPatience) != GL_TIMEOUT_EXPIRED;
+        return glClientWaitSync(fence_, GL_SYNC_FLUSH_COMMANDS_BIT, kWaitNanoseconds) != GL_TIMEOUT_EXPIRED;
     }
     /// Once they are read.
     void copy_to(std::vector<std::uint8_t>& pixels) const {

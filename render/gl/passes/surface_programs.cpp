@@ -388,9 +388,9 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
 }
 
 void PlainProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    using Output = PlainVariant::Output;
-    const PlainVariant variant{color_ ? Output::color : Output::node_id, geometry.is_double_single(),
-                               clip_capacity(item.clip_planes.size()), item.cut != nullptr};
+    const PlainVariant variant{color_ ? PlainVariant::Output::color : PlainVariant::Output::node_id,
+                               geometry.is_double_single(), clip_capacity(item.clip_planes.size()),
+                               item.cut != nullptr};
     if (current_ != variant) {
         current_ = variant;
         programs_.use(variant);
