@@ -20,14 +20,14 @@ constexpr double kAlikeNormals = 0.035;
 
 SharedCorners::SharedCorners(const AdaptiveMesh& mesh)
     : first(mesh.corners().size()), normals(mesh.corners().size()) {
-    constexpr std::uint32_t kNobody = ~0U;
+    constexpr std::uint32_t kNoCorner = ~0U;
     const auto& corners = mesh.corners();
-    std::vector<std::uint32_t> head(mesh.vertices().size(), kNobody), next(corners.size(), kNobody);
+    std::vector<std::uint32_t> head(mesh.vertices().size(), kNoCorner), next(corners.size(), kNoCorner);
     for (std::uint32_t c = 0; c < corners.size(); ++c) {
         std::uint32_t* link = &head[corners[c].vertex];
-        while (*link != kNobody && glm::distance(corners[*link].normal, corners[c].normal) > kAlikeNormals)
+        while (*link != kNoCorner && glm::distance(corners[*link].normal, corners[c].normal) > kAlikeNormals)
             link = &next[*link];
-        if (*link == kNobody) *link = c;
+        if (*link == kNoCorner) *link = c;
         first[c] = *link;
         normals[*link] += glm::dvec3(corners[c].normal);
     }
