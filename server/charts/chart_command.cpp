@@ -229,7 +229,8 @@ void make_folder(const fs::path& folder) {
 
 }  // namespace
 
-void chart_command(ChartArguments arguments) {
+void chart_command(const ChartArguments& given) {
+    ChartArguments arguments = given;
     if (!arguments.out.empty()) require_gnuplot();
     if (!arguments.sessions.empty()) {
         if (!arguments.out.empty()) make_folder(arguments.out);

@@ -26,10 +26,11 @@ std::vector<std::string> own_words() {
 
 }  // namespace
 
-void chart_command(ChartArguments) {
+void chart_command(const ChartArguments&) {
     const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
     std::vector<std::string> words = own_words();
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     // As built, and as installed.

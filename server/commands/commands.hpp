@@ -138,7 +138,7 @@ struct ChartArguments {
 };
 /// In a program of its own, vrut-preview-chart: most who use this program chart nothing, and none waits until
 /// that is compiled. Here it takes the place of this process; throws std::runtime_error if it is not there.
-void chart_command(ChartArguments arguments);
+void chart_command(const ChartArguments& arguments);
 
 /// Where the program's scenes may lie, seen from the program: as installed, and as built.
 std::vector<std::filesystem::path> scene_folders();

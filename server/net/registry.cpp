@@ -50,27 +50,30 @@ bool ConnectionRegistry::has_place_for(protocol::Role role, const protocol::Hell
     return clients() < places;
 }
 
+std::shared_ptr<Connection> ServedRoom::find(const std::string& client) const {
+    const auto found = clients.find(client);
+    return found == clients.end() ? nullptr : found->second;
+}
+
+void ServedRoom::take_document(engine::EngineOutput& output) {
+    // Of a holder who is gone the key stays.
+    const auto holder = output.document->holder();
+    const auto connection = holder ? find(*holder) : nullptr;
+    if (connection || !holder) holder_key = connection ? connection->resume_key() : "";
+    const auto for_hosts = output.document->for_hosts();
+    host_document.set(for_hosts ? for_hosts : output.document, output.by, output.by_since);
+    document.set(std::move(output.document), std::move(output.by), output.by_since);
+    pictures.forget_before(document.newest()->revision());
+}
+
 void ServedRoom::take(engine::EngineOutput output) {
-    const auto find = [&](const std::string& client) {
-        const auto found = clients.find(client);
-        return found == clients.end() ? nullptr : found->second;
-    };
     if (output.begins_anew) {
         for (const auto& [name, connection] : std::map(clients))
             connection->close(boost::beast::websocket::close_code::service_restart, "the room begins anew");
         newest.reset();
         present_frame = 0;
     }
-    if (output.document) {
-        // Of a holder who is gone the key stays.
-        const auto holder = output.document->holder();
-        const auto connection = holder ? find(*holder) : nullptr;
-        if (connection || !holder) holder_key = connection ? connection->resume_key() : "";
-        const auto for_hosts = output.document->for_hosts();
-        host_document.set(for_hosts ? for_hosts : output.document, output.by, output.by_since);
-        document.set(std::move(output.document), std::move(output.by), output.by_since);
-        pictures.forget_before(document.newest()->revision());
-    }
+    if (output.document) take_document(output);
     if (output.stats) stats = std::move(output.stats);
     if (output.loading) {
         loading = std::move(output.loading);
@@ -91,8 +94,7 @@ void ServedRoom::take(engine::EngineOutput output) {
 void ServedRoom::take(std::shared_ptr<const engine::EncodedPicture> picture) {
     if (!picture->client.empty()) {
         if (pictures.take(*picture)) return;
-        if (const auto found = clients.find(picture->client); found != clients.end())
-            found->second->take_snapshot(std::move(picture));
+        if (const auto connection = find(picture->client)) connection->take_snapshot(std::move(picture));
         return;
     }
     const std::int64_t before = newest ? newest->header.frame : 0;

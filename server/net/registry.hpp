@@ -46,6 +46,10 @@ struct ServedRoom {
     // What its engine says.
     void take(engine::EngineOutput output);
     void take(std::shared_ptr<const engine::EncodedPicture> picture);
+
+private:
+    std::shared_ptr<Connection> find(const std::string& client) const;  ///< null: none of that name
+    void take_document(engine::EngineOutput& output);
 };
 
 /// Places for clients beyond max_clients, which the audience cannot take: so many for hosts and for who has
