@@ -73,7 +73,7 @@ fi
 program=$ROOT/$folder/server/vrut-preview
 if [ ! -x "$program" ]; then
     require_space "$ROOT/$folder" 400 "Building the program"
-    say "Building the program in $folder; the first time takes about four minutes on two cores."
+    say "Building the program in $folder; the first time takes two to four minutes on two cores."
 fi
 (build) 2>&1 | tee "$ROOT/$folder/quickstart.log" >&2 ||
     die "the build failed (its last lines are above, all of them in $folder/quickstart.log): if the source is unchanged, remove $folder and start again."
