@@ -13,8 +13,6 @@ namespace vrut::io {
 
 namespace {
 
-// As for scene text: beyond this, coordinates would leave the range of float when squared on the GPU.
-
 // Of a container, and attachments looked at: far more than OpenSG's own have, and a search stays short.
 constexpr std::size_t kMostFields = 256;
 

@@ -19,7 +19,6 @@ namespace vrut::io {
 
 namespace {
 
-// Coordinates beyond this would leave the range of float when squared on the GPU.
 constexpr double kMaxColor = 1e6;
 constexpr double kMaxScale = 1e6;
 
