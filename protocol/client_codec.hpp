@@ -1,6 +1,6 @@
 #pragma once
 
-#include "json_reader.hpp"
+#include "fields.hpp"
 #include "messages.hpp"
 
 /// Client messages as JSON values, for what else holds them. For protocol's own .cpp files.
@@ -10,6 +10,8 @@ namespace vrut::protocol {
 decltype(ClientMessage::payload) read_payload(const Json& json);
 Json to_json(const ClientMessage& message);
 /// A flight's keyframes must rise. Throws BadJson.
-Fly checked(Fly fly);
+void check(const Fly& fly);
+/// Of the struct that it holds.
+const FieldTable& table_of_message(const decltype(ClientMessage::payload)& payload);
 
 }  // namespace vrut::protocol

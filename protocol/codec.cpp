@@ -1,46 +1,48 @@
 #include "codec.hpp"
 
+#include <algorithm>
+
 #include "client_codec.hpp"
-#include "descriptions.hpp"
+#include "client_descriptions.hpp"
 #include "message_table.hpp"
+#include "server_descriptions.hpp"
 
 namespace vrut::protocol {
 
-Fly checked(Fly fly) {
+void check(const Fly& fly) {
     for (std::size_t i = 1; i < fly.keyframes.size(); ++i)
         if (!(fly.keyframes[i].at > fly.keyframes[i - 1].at))
             throw BadJson{error_code::out_of_range,
                           "'keyframes[" + std::to_string(i) + "].at' must be later than the one before"};
-    return fly;
 }
 
 namespace {
 
-Record checked(Record record) {
+void check(const Record& record) {
     for (const char c : record.name)
         if (!((c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' ||
               c == '-'))
             throw BadJson{error_code::out_of_range, "'name' must hold letters, digits, '_' and '-' only"};
-    return record;
 }
 
-Control checked(Control control) {
+void check(const Control& control) {
     using Action = Control::Action;
     if ((control.action == Action::give || control.action == Action::decline) && !control.client)
         throw BadJson{error_code::bad_message, "member 'client' is missing"};
-    return control;
 }
 
 /// Both coordinates come, or neither.
-Point checked(Point point) {
+void check(const Point& point) {
     if (point.x && !point.y) throw BadJson{error_code::bad_message, "member 'y' is missing"};
     if (!point.x && (point.y || point.frame)) throw BadJson{error_code::bad_message, "member 'x' is missing"};
-    return point;
 }
 
-template <class Message>
-Message checked(Message message) {
-    return message;
+/// What of a message is wrong although each member by itself is right.
+void check(const decltype(ClientMessage::payload)& payload) {
+    if (const auto* record = std::get_if<Record>(&payload)) check(*record);
+    if (const auto* control = std::get_if<Control>(&payload)) check(*control);
+    if (const auto* point = std::get_if<Point>(&payload)) check(*point);
+    if (const auto* fly = std::get_if<Fly>(&payload)) check(*fly);
 }
 
 template <class Message>
@@ -53,21 +55,21 @@ std::string encode_as(const char* type, const Message& message) {
 }  // namespace
 
 decltype(ClientMessage::payload) read_payload(const Json& json) {
-    decltype(ClientMessage::payload) payload;
     if (!json.contains("type")) throw BadJson{error_code::bad_message, "member 'type' is missing"};
-    const std::string type = read_string(json["type"], "type", kMaxMessageBytes);
-    const std::string at_top;
-    bool found = false;
-    for_each_client_type([&](const MessageTraits& traits, auto prototype) {
-        if (found || type != traits.type) return;
-        found = true;
-        using Message = decltype(prototype);
-        Reader<Message> reader(json, prototype, at_top);
-        describe(reader, static_cast<const Message*>(nullptr));
-        payload = checked(std::move(prototype));
-    });
-    if (!found) throw BadJson{error_code::bad_message, "there is no message type '" + excerpt(type) + "'"};
+    const std::string name = read_string(json["type"], "type", kMaxMessageBytes);
+    const auto types = client_message_types();
+    const auto type = std::ranges::find_if(types, [&](const auto& each) { return name == each.traits.type; });
+    if (type == types.end())
+        throw BadJson{error_code::bad_message, "there is no message type '" + excerpt(name) + "'"};
+    decltype(ClientMessage::payload) payload = type->prototype;
+    std::visit([&](auto& message) { read_fields(table_of_value(message), &message, json, ""); }, payload);
+    check(payload);
     return payload;
+}
+
+const FieldTable& table_of_message(const decltype(ClientMessage::payload)& payload) {
+    return std::visit([](const auto& message) -> const FieldTable& { return table_of_value(message); },
+                      payload);
 }
 
 Json to_json(const ClientMessage& message) {
@@ -99,7 +101,9 @@ tl::expected<Fly, Error> parse_flight(std::string_view text) {
     return or_error([&] {
         const Json json = parse_strictly(text);
         if (!json.is_object()) throw BadJson{error_code::bad_message, "a flight must be a JSON object"};
-        return checked(read_struct<Fly>(json, ""));
+        auto fly = read_struct<Fly>(json, "");
+        check(fly);
+        return fly;
     });
 }
 

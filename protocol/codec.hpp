@@ -5,6 +5,7 @@
 #include <tl/expected.hpp>
 
 #include "messages.hpp"
+#include "server_messages.hpp"
 #include "state.hpp"
 
 namespace vrut::protocol {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "descriptions.hpp"
+#include "file_descriptions.hpp"
 
 namespace vrut::protocol {
 

@@ -10,11 +10,46 @@ namespace vrut::protocol {
 
 namespace {
 
+class LoggedClientKind : public Kind {
+public:
+    void read(const Json& json, const std::string& path, void* value) const override {
+        object_->read(json, path, value);
+        if (json.contains("width"))
+            static_cast<LogHeader::Client*>(value)->wanted = read_struct<Resize>(json, path);
+    }
+    Json write(const void* value) const override {
+        Json json = object_->write(value);
+        const auto& wanted = static_cast<const LogHeader::Client*>(value)->wanted;
+        if (wanted) json.update(write_struct(*wanted));
+        return json;
+    }
+    Json schema() const override {
+        Json schema = object_->schema();
+        schema["properties"].update(schema_of_struct<Resize>()["properties"]);
+        return schema;
+    }
+
+private:
+    KindPtr object_ = bind(Object{}, Of<LogHeader::Client>{});
+};
+
+class ObjectTextKind : public Kind {
+public:
+    void read(const Json& json, const std::string& path, void* value) const override {
+        *static_cast<std::string*>(value) = dump(read_object(json, path));
+    }
+    Json write(const void* value) const override {
+        const auto& text = *static_cast<const std::string*>(value);
+        return text.empty() ? Json::object() : Json::parse(text);
+    }
+    Json schema() const override { return {{"$ref", "#/$defs/statePatch"}}; }
+};
+
 // The state document of a large scene is large.
 constexpr int kMaxLogDepth = kMaxDepth + 2;
 
 LogTime read_time(const Json& json) {
-    const double ms = kLogTime.read(json, "at");
+    const double ms = read_number(json, "at", kLogTime.min, kLogTime.max);
     return LogTime(std::llround(ms * 1000));
 }
 
@@ -68,6 +103,9 @@ void write_event(const decltype(LogLine::what)& what, Json& json) {
 
 }  // namespace
 
+KindPtr bind(const LoggedClient&, Of<LogHeader::Client>) { return made<LoggedClientKind>(); }
+KindPtr bind(const ObjectText&, Of<std::string>) { return made<ObjectTextKind>(); }
+
 std::string encode(const LogHeader& header) {
     const Json json = write_struct(header);
     // What it is stands first, for whoever looks at the file.
@@ -93,7 +131,7 @@ tl::expected<LogHeader, Error> decode_log_header(std::string_view text) {
             throw BadJson{error_code::bad_message, "'log' must be \"" + std::string(kLog) + "\""};
         read_integer(member(json, "version"), "version", kVersion, kVersion);
         LogHeader header = read_struct<LogHeader>(json, "");
-        if (header.flight) header.flight->fly = checked(std::move(header.flight->fly));
+        if (header.flight) check(header.flight->fly);
         return header;
     });
 }
@@ -103,7 +141,7 @@ tl::expected<LogLine, Error> decode_log_line(std::string_view text) {
         const Json json = parse_strictly(text, kMaxLogDepth);
         LogLine line;
         line.at = read_time(member(read_object(json, "line"), "at"));
-        if (json.contains("client")) line.client = kClientId.read(json["client"], "client");
+        if (json.contains("client")) line.client = read_string(json["client"], "client", kClientId.max);
         if (json.contains("sequence"))
             line.sequence =
                 static_cast<std::uint64_t>(read_integer(json["sequence"], "sequence", 1, kMaxInteger));

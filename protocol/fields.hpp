@@ -1,370 +1,370 @@
 #pragma once
 
+#include <concepts>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
-#include "json_reader.hpp"
+#include "kinds.hpp"
+#include "state.hpp"
 
-/// The members of what travels, each described once: `describe(visitor, const T*)` names a struct's members
-/// with the kind and the meaning of each. Readers, writers and the JSON Schema are visitors; the schema's
-/// tables in the pages beside this file follow from it. For protocol's own .cpp files.
+/// The members of what travels. `describe(Fields<T>&)` names those of a struct once, with the kind and the
+/// meaning of each; they become a table at the first use. Reading, writing, patching and the JSON Schema are
+/// loops over such a table, and the tables in the pages beside this file follow from the schema. For
+/// protocol's own .cpp files.
 namespace vrut::protocol {
 
-template <class T>
-struct IsOptional : std::false_type {};
-template <class T>
-struct IsOptional<std::optional<T>> : std::true_type {};
-template <class T>
-struct IsListOfWords : std::false_type {};
-template <class T>
-struct IsListOfWords<std::vector<T>> : std::is_enum<T> {};
-
-/// What a kind has read, as the member's own type.
-template <class Member, class Value>
-void assign(Member& member, Value&& value) {
-    if constexpr (IsOptional<Member>::value)
-        member = static_cast<typename Member::value_type>(std::forward<Value>(value));
-    else if constexpr (IsListOfWords<Member>::value) {
-        member.clear();
-        for (const std::size_t word : value) member.push_back(static_cast<typename Member::value_type>(word));
-    } else
-        member = static_cast<Member>(std::forward<Value>(value));
-}
-
-// What visitors do whatever the member's type, so that it is compiled once.
-
-/// The name of a member in an error: the path to its object, and its own name.
-std::string path_of(const std::string& path, const char* name);
-/// Null where the object has no such member.
-const Json* find_member(const Json& object, const char* name);
-/// Throws BadJson where the object, to which `path` leads, has no such member.
-const Json& require_member(const Json& object, const char* name, const std::string& path);
-void put(Json& object, const char* name, Json value);
-
-Json number_schema(double min, double max);
-Json integer_schema(std::int64_t min, std::int64_t max);
-Json type_schema(const char* type);
-Json text_schema(std::size_t max);
-Json word_schema(std::span<const std::string_view> words);
-Json list_schema(Json items, std::size_t min, std::size_t max);
-Json table_schema(Json entry);
-Json reference_schema(const char* name);
-Json object_schema();
-void add_property(Json& schema, const char* name, Json property, const char* meaning);
-void add_required(Json& schema, const char* name);
-void add_read_only(Json& schema, const char* name);
-/// Left out where it is empty.
-void add_default(Json& schema, const char* name, Json value);
-
-/// A value of which each member has its default.
-template <class T>
-const T& defaults_of() {
-    static const T defaults{};
-    return defaults;
-}
-
-template <class T>
-T read_struct(const Json& json, const std::string& path);
-template <class T>
-Json write_struct(const T& value);
-template <class T>
-Json schema_of_struct();
-
-// --- kinds: what a value may be. Each reads itself (and throws BadJson), writes itself, and has a schema.
-
-struct Number {
-    double min, max;
-    double read(const Json& json, const std::string& path) const { return read_number(json, path, min, max); }
-    Json write(double value) const { return value; }
-    Json schema() const { return number_schema(min, max); }
+/// What can be done with values of a member's C++ type of which only the address is known; null: what is not
+/// needed of it, or what it has not.
+struct Type {
+    bool (*empty)(const void* value);
+    bool (*equal)(const void* a, const void* b);
+    void (*copy)(void* to, const void* from);
+    // Of std::optional:
+    const void* (*held)(const void* optional);  ///< what it holds, null: nothing
+    void* (*hold)(void* optional);              ///< makes it hold something, and tells where
+    void (*reset)(void* optional);
 };
 
-struct Integer {
-    std::int64_t min = 0, max = kMaxInteger;
-    std::int64_t read(const Json& json, const std::string& path) const {
-        return read_integer(json, path, min, max);
-    }
-    template <class T>
-    Json write(T value) const {
-        return value;
-    }
-    Json schema() const { return integer_schema(min, max); }
+/// If a member has to be there.
+enum class Presence {
+    required,  ///< when it is read, too
+    optional,  ///< no; where it has its default it is left out
+    lasting,   ///< always written, and where it is not read, it stays as it is
 };
 
-struct Flag {
-    bool read(const Json& json, const std::string& path) const { return read_bool(json, path); }
-    Json write(bool value) const { return value; }
-    Json schema() const { return type_schema("boolean"); }
+/// What holds for a member of the state besides, as a sum.
+enum Rules : unsigned {
+    none = 0,
+    read_only = 1,
+    kept = 2,            ///< with the scene, where a server keeps what clients change
+    for_hosts = 4,       ///< what hosts may patch, too
+    in_cues = 8,         ///< part of what a cue shows
+    survives_open = 16,  ///< stays as it is when another scene is opened
+    from_nothing = 32,   ///< of an entry that starts with what is shown: what a patch gives is all of it
 };
 
-/// At most `max` bytes of UTF-8.
-struct Text {
-    std::size_t max;
-    std::string read(const Json& json, const std::string& path) const { return read_string(json, path, max); }
-    Json write(const std::string& value) const { return value; }
-    Json schema() const { return text_schema(max); }
-};
-
-/// An enumerator by its name: words[0] is that of value 0.
-template <std::size_t N>
-struct Word {
-    std::array<std::string_view, N> words;
-    std::size_t read(const Json& json, const std::string& path) const { return read_word(json, path, words); }
-    template <class Enum>
-    Json write(Enum value) const {
-        return words[static_cast<std::size_t>(value)];
-    }
-    Json schema() const { return word_schema(words); }
-};
-template <class... Words>
-constexpr Word<sizeof...(Words)> word(Words... words) {
-    return {{words...}};
-}
-
-template <class V>
-struct Vector {
-    double min, max;
-    V read(const Json& json, const std::string& path) const { return read_vector<V>(json, path, min, max); }
-    Json write(const V& value) const { return to_json(value); }
-    Json schema() const { return list_schema(Number{min, max}.schema(), V::length(), V::length()); }
-};
-
-/// 16 numbers row by row.
-struct Matrix {
-    double max;  ///< of each number's size
-    glm::dmat4 read(const Json& json, const std::string& path) const { return read_matrix(json, path, max); }
-    Json write(const glm::dmat4& value) const { return to_json(value); }
-    Json schema() const { return list_schema(Number{-max, max}.schema(), 16, 16); }
-};
-
-template <class Element>
-struct List {
-    Element element;
-    std::size_t min, max;
-    auto read(const Json& json, const std::string& path) const {
-        read_array(json, path, min, max);
-        std::vector<decltype(element.read(json, path))> values;
-        for (std::size_t i = 0; i < json.size(); ++i)
-            values.push_back(element.read(json[i], path + "[" + std::to_string(i) + "]"));
-        return values;
-    }
-    template <class T>
-    Json write(const std::vector<T>& values) const {
-        Json json = Json::array();
-        for (const T& value : values) json.push_back(element.write(value));
-        return json;
-    }
-    Json schema() const { return list_schema(element.schema(), min, max); }
-};
-
-template <class T>
-struct Object {
-    T read(const Json& json, const std::string& path) const { return read_struct<T>(json, path); }
-    Json write(const T& value) const { return write_struct(value); }
-    Json schema() const { return schema_of_struct<T>(); }
-};
-
-/// What several places of the schema refer to by `name`.
-template <class Kind>
-struct Defined : Kind {
+struct Field {
     const char* name;
-    Json schema() const { return reference_schema(name); }
+    const char* meaning;
+    KindPtr kind;
+    const Type* type;
+    std::size_t offset;  ///< bytes from the struct's address
+    Presence presence;
+    unsigned rules;  ///< Rules
+
+    bool has(Rules rule) const { return (rules & rule) != 0; }
+    void* in(void* object) const { return static_cast<std::byte*>(object) + offset; }
+    const void* in(const void* object) const { return static_cast<const std::byte*>(object) + offset; }
+    /// Where its value is; null: it has none.
+    const void* value_in(const void* object) const;
 };
 
-/// {"ID or NAME": {…}}, to be written only.
+/// Of one struct.
+struct FieldTable {
+    const void* defaults;  ///< a value of the struct in which each member has its default
+    std::vector<Field> fields;
+};
+
+// --- loops over a table; `path` leads to the object, and is empty at the top
+
+/// Fills a struct; what is not described is ignored. Throws BadJson.
+void read_fields(const FieldTable& table, void* target, const Json& object, const std::string& path);
+Json write_fields(const FieldTable& table, const void* object);
+Json schema_of(const FieldTable& table);
+/// A merge patch (RFC 7396): null gives a member back what it has in `start`. Throws BadJson, also for
+/// members that are not described or read-only.
+void patch_fields(const FieldTable& table, void* target, const void* start, const Json& patch,
+                  const std::string& path);
+/// From a document as write_fields() made it: what clients may change, over what is there. What may be absent
+/// and is gets empty. Throws BadJson.
+void restore_fields(const FieldTable& table, void* target, const Json& document, const std::string& path);
+/// Of a patch: nothing need be there, anything may be null, nothing else may be there.
+Json patch_schema_of(const FieldTable& table);
+/// Copies each member with this rule from one value to another; of an object that has not itself the rule,
+/// those within.
+void copy_fields(const FieldTable& table, Rules rule, void* to, const void* from);
+/// Between values of two structs: members of one name and type, where one of the two has this rule; and
+/// within objects of one name.
+void copy_common_fields(Rules rule, const FieldTable& to_table, void* to, const FieldTable& from_table,
+                        const void* from);
+
+/// What must be merged into `from` to make `to` of it (RFC 7396); neither holds a null.
+Json merge_diff(const Json& from, const Json& to);
+
+// --- tables of C++ types
+
 template <class T>
-struct Table {
-    Json write(const std::map<std::string, T>& values) const {
-        Json json = Json::object();
-        for (const auto& [key, value] : values) json[key] = write_struct(value);
-        return json;
-    }
-    Json schema() const { return table_schema(schema_of_struct<T>()); }
+concept HasEquality = requires(const T& a) {
+    a == a;
 };
-
-/// {"NAME": value}, to be written only.
-template <class Kind>
-struct ValuesByName {
-    Kind kind;
-    template <class T>
-    Json write(const std::map<std::string, T>& values) const {
-        Json json = Json::object();
-        for (const auto& [name, value] : values) json[name] = kind.write(value);
-        return json;
-    }
-    Json schema() const { return table_schema(kind.schema()); }
-};
-
-/// What is shared because it is large and seldom changes.
-template <class Kind>
-struct SharedKind {
-    Kind kind;
-    template <class T>
-    Json write(const T& shared) const {
-        return kind.write(*shared.value);
-    }
-    Json schema() const { return kind.schema(); }
-};
-
-/// Any object, kept as it is.
-struct AnyObject {
-    Json schema_value;
-    std::shared_ptr<const Json> read(const Json& json, const std::string& path) const {
-        return std::make_shared<const Json>(read_object(json, path));
-    }
-    Json write(const std::shared_ptr<const Json>& value) const { return *value; }
-    Json schema() const { return schema_value; }
-};
-
-// --- visitors
-
-/// Fills a struct from an object; what is not described is ignored.
 template <class T>
-class Reader {
+struct IsComparable : std::bool_constant<HasEquality<T>> {};
+template <class T>
+struct IsComparable<std::vector<T>> : IsComparable<T> {};
+template <class T>
+struct IsComparable<std::optional<T>> : IsComparable<T> {};
+template <class Key, class T>
+struct IsComparable<std::map<Key, T>> : IsComparable<T> {};
+
+template <class T>
+constexpr void add_comparison(Type& type) {
+    if constexpr (requires(const T& value) { value.empty(); })
+        type.empty = [](const void* value) { return static_cast<const T*>(value)->empty(); };
+    if constexpr (IsComparable<T>::value)
+        type.equal = [](const void* a, const void* b) {
+            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
+        };
+}
+template <class T>
+constexpr void add_optional(Type& type) {
+    if constexpr (requires(T & value) { value.has_value(); }) {
+        type.held = [](const void* value) -> const void* {
+            const T& optional = *static_cast<const T*>(value);
+            return optional ? &*optional : nullptr;
+        };
+        type.hold = [](void* value) -> void* { return &static_cast<T*>(value)->emplace(); };
+    }
+}
+/// Of what is always written.
+template <class T>
+const Type* type_of_required() {
+    static constexpr Type type = [] {
+        Type made{};
+        add_optional<T>(made);
+        return made;
+    }();
+    return &type;
+}
+/// Of what is written where it has not its default.
+template <class T>
+const Type* type_of_optional() {
+    static constexpr Type type = [] {
+        Type made{};
+        add_optional<T>(made);
+        add_comparison<T>(made);
+        return made;
+    }();
+    return &type;
+}
+/// Of the state.
+template <class T>
+const Type* type_of_lasting() {
+    static constexpr Type type = [] {
+        Type made{};
+        add_optional<T>(made);
+        add_comparison<T>(made);
+        made.copy = [](void* to, const void* from) { *static_cast<T*>(to) = *static_cast<const T*>(from); };
+        if constexpr (requires(T & value) { value.has_value(); })
+            made.reset = [](void* value) { static_cast<T*>(value)->reset(); };
+        return made;
+    }();
+    return &type;
+}
+
+template <class T>
+struct Held {
+    using type = T;
+};
+template <class T>
+struct Held<std::optional<T>> {
+    using type = T;
+};
+
+template <class T>
+const FieldTable& table_of();
+
+template <class Kind, class T>
+KindPtr kind_of_value(const Kind& kind, Of<T> type) {
+    return bind(kind, type);
+}
+/// What is shared because it is large and seldom changes is written only.
+template <class Kind, class T>
+KindPtr kind_of_value(const Kind& kind, Of<Shared<T>>) {
+    return shared_kind(
+        [](const void* shared) -> const void* { return static_cast<const Shared<T>*>(shared)->value.get(); },
+        bind(kind, Of<T>{}));
+}
+/// Of a member's value, where that may hold none.
+template <class Member, class Kind>
+KindPtr kind_for(const Kind& kind) {
+    return kind_of_value(kind, Of<typename Held<Member>::type>{});
+}
+
+/// Takes the members of a struct, in their order. What does not depend on their types is compiled once.
+class FieldList {
 public:
-    Reader(const Json& object, T& target, const std::string& path)
-        : object_(object), target_(target), path_(path) {}
+    explicit FieldList(FieldTable& table) : table_(table) {}
 
-    template <class Member, class Kind>
-    void required(const char* name, Member T::*member, const Kind& kind, const char*) {
-        read(name, member, kind, &require_member(object_, name, path_));
+protected:
+    void add(const char* name, KindPtr kind, const Type* type, const void* member, const char* meaning,
+             Presence presence, unsigned rules);
+    void inline_fields(const FieldTable& part, const void* member);
+
+private:
+    FieldTable& table_;
+};
+
+template <class T>
+class Fields : public FieldList {
+public:
+    explicit Fields(FieldTable& table)
+        : FieldList(table), defaults_(*static_cast<const T*>(table.defaults)) {}
+
+    template <class Member, class Owner, class Kind>
+    void required(const char* name, Member Owner::*member, const Kind& kind, const char* meaning) {
+        add(name, kind_for<Member>(kind), type_of_required<Member>(), &(defaults_.*member), meaning,
+            Presence::required, none);
     }
-    template <class Member, class Kind>
-    void optional(const char* name, Member T::*member, const Kind& kind, const char*) {
-        read(name, member, kind, find_member(object_, name));
+    template <class Member, class Owner, class Kind>
+    void optional(const char* name, Member Owner::*member, const Kind& kind, const char* meaning) {
+        add(name, kind_for<Member>(kind), type_of_optional<Member>(), &(defaults_.*member), meaning,
+            Presence::optional, none);
+    }
+    /// Of the state: clients may patch it.
+    template <class Member, class Owner, class Kind>
+    void writable(const char* name, Member Owner::*member, const Kind& kind, const char* meaning,
+                  unsigned rules = none) {
+        add(name, kind_for<Member>(kind), type_of_lasting<Member>(), &(defaults_.*member), meaning,
+            Presence::lasting, rules);
+    }
+    /// Of the state: the server's alone.
+    template <class Member, class Owner, class Kind>
+    void fixed(const char* name, Member Owner::*member, const Kind& kind, const char* meaning,
+               unsigned rules = none) {
+        writable(name, member, kind, meaning, rules | read_only);
     }
     /// Members that stand in the same object.
-    template <class Member>
-    void inlined(Member T::*member) {
-        Reader<Member> part(object_, target_.*member, path_);
-        describe(part, static_cast<const Member*>(nullptr));
-    }
-    // A whole section of the state: what clients may not change is read, too.
-    template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        optional(name, member, kind, meaning);
-    }
-    template <class Member, class Kind>
-    void fixed(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        optional(name, member, kind, meaning);
+    template <class Member, class Owner>
+    void inlined(Member Owner::*member) {
+        inline_fields(table_of<Member>(), &(defaults_.*member));
     }
 
 private:
-    template <class Member, class Kind>
-    void read(const char* name, Member T::*member, const Kind& kind, const Json* found) {
-        if (found) assign(target_.*member, kind.read(*found, path_of(path_, name)));
-    }
-
-    const Json& object_;
-    T& target_;
-    const std::string& path_;
+    const T& defaults_;
 };
+
+const FieldTable& made_table(const void* defaults, void (*describe)(FieldTable& table));
+
+/// Is made at the first call, and stays.
+template <class T>
+const FieldTable& table_of() {
+    static const FieldTable& table = made_table(new T{}, [](FieldTable& made) {
+        Fields<T> fields(made);
+        describe(fields);
+    });
+    return table;
+}
 
 template <class T>
-class Writer {
-public:
-    Writer(const T& value, Json& object) : value_(value), object_(object) {}
+const FieldTable& table_of_value(const T&) {
+    return table_of<T>();
+}
 
-    template <class Member, class Kind>
-    void required(const char* name, Member T::*member, const Kind& kind, const char*) {
-        if constexpr (!IsOptional<Member>::value)
-            put(object_, name, kind.write(value_.*member));
-        else if (value_.*member)
-            put(object_, name, kind.write(*(value_.*member)));
-    }
-    /// What has its default is left out.
-    template <class Member, class Kind>
-    void optional(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        if constexpr (requires { (value_.*member).empty(); }) {
-            if ((value_.*member).empty()) return;
-        } else if constexpr (requires { value_.*member == value_.*member; }) {
-            if (value_.*member == defaults_of<T>().*member) return;
-        }
-        required(name, member, kind, meaning);
-    }
-    template <class Member>
-    void inlined(Member T::*member) {
-        Writer<Member> part(value_.*member, object_);
-        describe(part, static_cast<const Member*>(nullptr));
-    }
-    template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        required(name, member, kind, meaning);
-    }
-    template <class Member, class Kind>
-    void fixed(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        required(name, member, kind, meaning);
-    }
-
-private:
-    const T& value_;
-    Json& object_;
-};
-
-/// The JSON Schema of an object.
-template <class T>
-class SchemaWriter {
-public:
-    explicit SchemaWriter(Json& schema) : schema_(schema) {}
-
-    template <class Member, class Kind>
-    void required(const char* name, Member T::*, const Kind& kind, const char* meaning) {
-        add_property(schema_, name, kind.schema(), meaning);
-        if (!IsOptional<Member>::value) add_required(schema_, name);
-    }
-    template <class Member, class Kind>
-    void optional(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        add_property(schema_, name, kind.schema(), meaning);
-        if constexpr (!IsOptional<Member>::value)
-            add_default(schema_, name, kind.write(defaults_of<T>().*member));
-    }
-    template <class Member>
-    void inlined(Member T::*) {
-        SchemaWriter<Member> part(schema_);
-        describe(part, static_cast<const Member*>(nullptr));
-    }
-    template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        required(name, member, kind, meaning);
-    }
-    template <class Member, class Kind>
-    void fixed(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
-        required(name, member, kind, meaning);
-        add_read_only(schema_, name);
-    }
-
-private:
-    Json& schema_;
-};
-
+/// Throws BadJson.
 template <class T>
 T read_struct(const Json& json, const std::string& path) {
-    read_object(json, path.empty() ? "message" : path);
     T value{};
-    Reader<T> reader(json, value, path);
-    describe(reader, static_cast<const T*>(nullptr));
+    read_fields(table_of<T>(), &value, read_object(json, path.empty() ? "message" : path), path);
     return value;
 }
 
 template <class T>
 Json write_struct(const T& value) {
-    Json json = Json::object();
-    Writer<T> writer(value, json);
-    describe(writer, static_cast<const T*>(nullptr));
-    return json;
+    return write_fields(table_of<T>(), &value);
 }
 
 template <class T>
 Json schema_of_struct() {
-    Json schema = object_schema();
-    SchemaWriter<T> writer(schema);
-    describe(writer, static_cast<const T*>(nullptr));
-    return schema;
+    return schema_of(table_of<T>());
+}
+
+template <class T>
+void patch_struct(T& target, const T& start, const Json& patch, const std::string& path) {
+    patch_fields(table_of<T>(), &target, &start, patch, path);
+}
+
+// --- kinds of members whose C++ types have templates
+
+template <class T>
+KindPtr bind(const Object& object, Of<T>) {
+    return object_kind(object, object.table ? object.table : &table_of<T>);
+}
+template <class T>
+KindPtr bind(const Section& section, Of<T>) {
+    return section_kind(section, &table_of<T>);
+}
+
+template <class T, class Element>
+KindPtr bind(const List<Element>& list, Of<std::vector<T>>) {
+    using Values = std::vector<T>;
+    static constexpr ListType type{
+        [](const void* values) { return static_cast<const Values*>(values)->size(); },
+        [](const void* values, std::size_t i) -> const void* {
+            return &(*static_cast<const Values*>(values))[i];
+        },
+        [](void* values) { static_cast<Values*>(values)->clear(); },
+        [](void* values) -> void* { return &static_cast<Values*>(values)->emplace_back(); }};
+    return list_kind(type, bind(list.element, Of<T>{}), list.min, list.max);
+}
+
+template <class T>
+const std::map<std::string, T>& map_in(const std::map<std::string, T>& map) {
+    return map;
+}
+template <class T>
+const std::map<std::string, T>& map_in(const SharedMap<T>& shared) {
+    return *shared;
+}
+template <class Holder>
+void for_each_entry(const void* holder, const std::function<void(const std::string&, const void*)>& use) {
+    for (const auto& [key, value] : map_in(*static_cast<const Holder*>(holder))) use(key, &value);
+}
+
+template <class T, class Entry>
+KindPtr bind(const Table<Entry>& table, Of<std::map<std::string, T>>) {
+    return table_kind(&for_each_entry<std::map<std::string, T>>, bind(table.entry, Of<T>{}));
+}
+template <class T, class Entry>
+KindPtr bind(const Table<Entry>& table, Of<SharedMap<T>>) {
+    return table_kind(&for_each_entry<SharedMap<T>>, bind(table.entry, Of<T>{}));
+}
+
+template <class T>
+MapType map_type() {
+    using Map = std::map<std::string, T>;
+    using Shared = SharedMap<T>;
+    return {&for_each_entry<Shared>,
+            [](const void* shared, const std::string& key) -> const void* {
+                const auto found = (*static_cast<const Shared*>(shared))->find(key);
+                return found == (*static_cast<const Shared*>(shared))->end() ? nullptr : &found->second;
+            },
+            [](void* shared, const std::function<void(void*)>& change) {
+                Map map = **static_cast<Shared*>(shared);
+                change(&map);
+                static_cast<Shared*>(shared)->set(std::move(map));
+            },
+            [](const void* map) { return static_cast<const Map*>(map)->size(); },
+            [](void* map, const std::string& key) -> void* {
+                const auto found = static_cast<Map*>(map)->find(key);
+                return found == static_cast<Map*>(map)->end() ? nullptr : &found->second;
+            },
+            [](void* map, const std::string& key) -> void* { return &(*static_cast<Map*>(map))[key]; },
+            [](void* map, const std::string& key) { static_cast<Map*>(map)->erase(key); },
+            [](void* map) { static_cast<Map*>(map)->clear(); },
+            [](void* to, const void* from) { *static_cast<T*>(to) = *static_cast<const T*>(from); }};
+}
+template <class T>
+KindPtr bind(const Items&, Of<SharedMap<T>>) {
+    return items_kind(map_type<T>(), &table_of<T>);
+}
+template <class T>
+KindPtr bind(const Entries& entries, Of<SharedMap<T>>) {
+    return entries_kind(map_type<T>(), &table_of<T>, entries);
 }
 
 }  // namespace vrut::protocol

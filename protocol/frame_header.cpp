@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "descriptions.hpp"
+#include "file_descriptions.hpp"
 
 namespace vrut::protocol {
 

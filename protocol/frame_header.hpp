@@ -30,10 +30,6 @@ struct FrameHeader {
         double render_ms = 0, readback_ms = 0, encode_ms = 0;
         std::optional<double> since_input_ms;
     };
-    struct Pose {
-        glm::dvec3 eye{0}, focus{0}, up{0}, center{0};
-        double fov = 40;
-    };
     /// Of a map of depth (warp::DepthMap).
     struct Depth {
         std::int64_t frame = 0;  ///< for which it was made

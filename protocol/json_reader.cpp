@@ -54,7 +54,7 @@ namespace {
 }
 
 /// The length is out of range; another type than numbers is wrong.
-void read_numbers(const Json& value, std::string_view what, std::size_t count) {
+void check_count(const Json& value, std::string_view what, std::size_t count) {
     if (!value.is_array()) wrong_type(what, "an array of numbers");
     if (value.size() != count) out_of_range(what, "an array of " + std::to_string(count) + " numbers");
 }
@@ -104,21 +104,14 @@ std::size_t read_word(const Json& value, std::string_view what, std::span<const 
     out_of_range(what, (words.size() > 1 ? "one of " : "") + list);
 }
 
-template <class Vector>
-Vector read_vector(const Json& value, std::string_view what, double min, double max) {
-    constexpr auto kLength = static_cast<std::size_t>(Vector::length());
-    read_numbers(value, what, kLength);
-    Vector result{};
-    for (std::size_t i = 0; i < kLength; ++i)
-        result[static_cast<glm::length_t>(i)] = read_number(value[i], what, min, max);
-    return result;
+void read_numbers(const Json& value, std::string_view what, double min, double max,
+                  std::span<double> numbers) {
+    check_count(value, what, numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = read_number(value[i], what, min, max);
 }
-template glm::dvec2 read_vector(const Json&, std::string_view, double, double);
-template glm::dvec3 read_vector(const Json&, std::string_view, double, double);
-template glm::dvec4 read_vector(const Json&, std::string_view, double, double);
 
 glm::dmat4 read_matrix(const Json& value, std::string_view what, double max) {
-    read_numbers(value, what, 16);
+    check_count(value, what, 16);
     glm::dmat4 matrix;
     for (std::size_t i = 0; i < 16; ++i)
         matrix[static_cast<glm::length_t>(i % 4)][static_cast<glm::length_t>(i / 4)] =
@@ -138,9 +131,6 @@ const Json& read_object(const Json& value, std::string_view what) {
     return value;
 }
 
-Json to_json(const glm::dvec2& v) { return {v.x, v.y}; }
-Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-Json to_json(const glm::dvec4& v) { return {v.x, v.y, v.z, v.w}; }
 Json to_json(const glm::dmat4& matrix) {
     Json numbers = Json::array();
     for (int row = 0; row < 4; ++row)

@@ -44,17 +44,14 @@ bool read_bool(const Json& value, std::string_view what);
 std::string read_string(const Json& value, std::string_view what, std::size_t max_length);
 /// Position in `words` of the value.
 std::size_t read_word(const Json& value, std::string_view what, std::span<const std::string_view> words);
-/// For glm::dvec2 to dvec4.
-template <class Vector>
-Vector read_vector(const Json& value, std::string_view what, double min, double max);
+/// As many numbers as there is space for.
+void read_numbers(const Json& value, std::string_view what, double min, double max,
+                  std::span<double> numbers);
 /// 16 numbers row by row.
 glm::dmat4 read_matrix(const Json& value, std::string_view what, double max);
 const Json& read_object(const Json& value, std::string_view what);
 const Json& read_array(const Json& value, std::string_view what, std::size_t min, std::size_t max);
 
-Json to_json(const glm::dvec2& v);
-Json to_json(const glm::dvec3& v);
-Json to_json(const glm::dvec4& v);
 /// 16 numbers row by row.
 Json to_json(const glm::dmat4& matrix);
 

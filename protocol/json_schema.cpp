@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <cctype>
 
+#include "client_codec.hpp"
 #include "codec.hpp"
 #include "event_log_descriptions.hpp"
+#include "file_descriptions.hpp"
 #include "message_table.hpp"
+#include "server_descriptions.hpp"
 
 namespace vrut::protocol {
 
@@ -13,10 +17,14 @@ std::string capitalized(std::string name) {
     return name;
 }
 
-Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
+Json reference(const std::string& name) {
+    Json schema;
+    schema["$ref"] = "#/$defs/" + name;
+    return schema;
+}
 
 Json with_type(Json schema, const char* type) {
-    schema["properties"]["type"] = {{"const", type}};
+    schema["properties"]["type"]["const"] = type;
     schema["required"].push_back("type");
     return schema;
 }
@@ -28,87 +36,90 @@ void add(Json& defs, const char* group, const std::string& name, Json schema) {
 }
 
 void add_client_messages(Json& defs) {
-    for_each_client_type([&](const MessageTraits& traits, const auto& prototype) {
-        Json schema = with_type(schema_of_struct<std::decay_t<decltype(prototype)>>(), traits.type);
-        Json& id = schema["properties"]["id"] = Integer{1, kMaxInteger}.schema();
+    for (const auto& [traits, prototype] : client_message_types()) {
+        Json schema = with_type(schema_of(table_of_message(prototype)), traits.type);
+        Json& id = schema["properties"]["id"] = schema_of(Integer{1, kMaxInteger});
         id["description"] = "Asks for exactly one answer, which has the same `id`. It rises.";
         add(defs, "clientMessage", "client" + capitalized(traits.type), std::move(schema));
-    });
+    }
     defs["clientRecord"]["properties"]["name"]["pattern"] = "^[A-Za-z0-9_-]*$";
-    defs["clientPoint"]["dependentRequired"] = {{"x", {"y"}}, {"y", {"x"}}, {"frame", {"x", "y"}}};
+    defs["clientPoint"]["dependentRequired"] =
+        Json::parse(R"({"x": ["y"], "y": ["x"], "frame": ["x", "y"]})");
 }
 
-template <class Message>
-void add_server_message(Json& defs, const char* type) {
-    Json schema = with_type(schema_of_struct<Message>(), type);
-    add(defs, "serverMessage", "server" + capitalized(type), std::move(schema));
+void add_server_message(Json& defs, const char* type, const FieldTable& table) {
+    add(defs, "serverMessage", "server" + capitalized(type), with_type(schema_of(table), type));
+}
+
+/// An object with these properties, all of which must be there but those that are named.
+Json object_with(std::initializer_list<std::pair<const char*, Json>> properties,
+                 std::initializer_list<std::string_view> may_be_missing = {}) {
+    Json schema = Json::parse(R"({"type": "object", "properties": {}, "required": []})");
+    for (const auto& [name, property] : properties) {
+        schema["properties"][name] = property;
+        if (std::ranges::find(may_be_missing, name) == may_be_missing.end())
+            schema["required"].push_back(name);
+    }
+    return schema;
+}
+
+Json described(Json schema, const char* meaning) {
+    schema["description"] = meaning;
+    return schema;
 }
 
 void add_server_messages(Json& defs) {
-    add_server_message<Welcome>(defs, "welcome");
-    add_server_message<Ok>(defs, "ok");
-    add_server_message<Picked>(defs, "picked");
-    add_server_message<Pointed>(defs, "pointed");
-    add_server_message<Flown>(defs, "flown");
-    add_server_message<TreePage>(defs, "tree");
-    add_server_message<Checked>(defs, "checked");
-    add_server_message<SceneList>(defs, "scenes");
-    add_server_message<SharedAddress>(defs, "shared");
-    add_server_message<Loading>(defs, "loading");
-    add_server_message<Stats>(defs, "stats");
-    add_server_message<Error>(defs, "error");
-    const auto described = [](Json schema, const char* meaning) {
-        schema["description"] = meaning;
-        return schema;
-    };
-    const Json revision = described(Integer{1, kMaxInteger}.schema(), "Of the state, once this is in it.");
+    add_server_message(defs, "welcome", table_of<Welcome>());
+    add_server_message(defs, "ok", table_of<Ok>());
+    add_server_message(defs, "picked", table_of<Picked>());
+    add_server_message(defs, "pointed", table_of<Pointed>());
+    add_server_message(defs, "flown", table_of<Flown>());
+    add_server_message(defs, "tree", table_of<TreePage>());
+    add_server_message(defs, "checked", table_of<Checked>());
+    add_server_message(defs, "scenes", table_of<SceneList>());
+    add_server_message(defs, "shared", table_of<SharedAddress>());
+    add_server_message(defs, "loading", table_of<Loading>());
+    add_server_message(defs, "stats", table_of<Stats>());
+    add_server_message(defs, "error", table_of<Error>());
+    const Json revision = described(schema_of(Integer{1, kMaxInteger}), "Of the state, once this is in it.");
+    const Json state = described(reference("stateDocument"), "The whole document.");
     add(defs, "serverMessage", "serverState",
-        with_type({{"type", "object"},
-                   {"properties",
-                    {{"revision", revision},
-                     {"state", described(reference("stateDocument"), "The whole document.")}}},
-                   {"required", {"revision", "state"}}},
-                  "state"));
+        with_type(object_with({{"revision", revision}, {"state", state}}), "state"));
+    const Json patch = described(Json::parse(R"({"type": "object"})"),
+                                 "From the document that this client got last to the present one.");
+    const Json by = described(schema_of(kName),
+                              "The client whose doing it is; missing: the server's, or several clients'.");
     add(defs, "serverMessage", "serverPatch",
-        with_type(
-            {{"type", "object"},
-             {"properties",
-              {{"revision", revision},
-               {"patch", described({{"type", "object"}},
-                                   "From the document that this client got last to the present one.")},
-               {"by",
-                described(kName.schema(),
-                          "The client whose doing it is; missing: the server's, or several clients'.")}}},
-             {"required", {"revision", "patch"}}},
-            "patch"));
+        with_type(object_with({{"revision", revision}, {"patch", patch}, {"by", by}}, {"by"}), "patch"));
+}
+
+/// A line of an event log. `client` tells what its member of this name means; null: it has none.
+Json event_log_line(Json schema, const char* client) {
+    schema["properties"]["at"] =
+        described(schema_of(kLogTime), "Milliseconds since the log began, in whole microseconds.");
+    schema["required"].push_back("at");
+    if (client) schema["properties"]["client"] = described(schema_of(kClientId), client);
+    return schema;
 }
 
 /// Lines of an event log: the first, and all others.
 void add_event_log(Json& defs) {
-    Json& header = defs["eventLogHeader"] = schema_of_struct<LogHeader>();
-    header["properties"]["log"] = {{"const", kLog}, {"description", "Tells that the file is an event log."}};
-    header["properties"]["version"] = {{"const", kVersion}, {"description", "Of the protocol."}};
+    Json& header = defs["eventLogHeader"] = schema_of(table_of<LogHeader>());
+    header["properties"].update(Json::parse(R"({
+        "log": {"description": "Tells that the file is an event log."},
+        "version": {"description": "Of the protocol."}})"));
+    header["properties"]["log"]["const"] = kLog;
+    header["properties"]["version"]["const"] = kVersion;
     header["required"].insert(header["required"].begin(), {"log", "version"});
-    const auto line = [](Json schema, const char* client) {
-        Json& at = schema["properties"]["at"] = kLogTime.schema();
-        at["description"] = "Milliseconds since the log began, in whole microseconds.";
-        schema["required"].push_back("at");
-        if (!client) return schema;
-        schema["properties"]["client"] = kClientId.schema();
-        schema["properties"]["client"]["description"] = client;
-        return schema;
-    };
-    Json message = {{"description", "As it came."}, {"$ref", "#/$defs/clientMessage"}};
-    add(defs, "eventLogLine", "eventLogMessage",
-        line({{"type", "object"},
-              {"properties", {{"message", std::move(message)}}},
-              {"required", {"client", "message"}}},
-             "Who sent it."));
+    Json message = event_log_line(Json::parse(R"({"type": "object", "required": ["client", "message"]})"),
+                                  "Who sent it.");
+    message["properties"]["message"] = described(reference("clientMessage"), "As it came.");
+    add(defs, "eventLogLine", "eventLogMessage", std::move(message));
     for_each_event([&](const char* name, const char* client, const auto& prototype) {
-        Json schema = line(schema_of_struct<std::decay_t<decltype(prototype)>>(), client);
-        schema["properties"]["event"] = {{"const", name}};
-        schema["required"].push_back("event");
-        add(defs, "eventLogLine", "eventLog" + capitalized(name), std::move(schema));
+        Json line = event_log_line(schema_of(table_of_value(prototype)), client);
+        line["properties"]["event"]["const"] = name;
+        line["required"].push_back("event");
+        add(defs, "eventLogLine", "eventLog" + capitalized(name), std::move(line));
     });
     for (const char* of_a_client : {"eventLogConnected", "eventLogDisconnected"})
         defs[of_a_client]["required"].push_back("client");
@@ -121,24 +132,26 @@ std::string json_schema() {
     add_client_messages(defs);
     add_server_messages(defs);
     add_event_log(defs);
-    defs["cameraOverlay"] = schema_of_struct<CameraOverlay>();
-    defs["camera"] = schema_of_struct<CameraState>();
-    defs["notice"] = schema_of_struct<Notice>();
-    defs["feature"] = schema_of_struct<Feature>();
-    defs["quality"] = schema_of_struct<Quality>();
-    defs["view"] = schema_of_struct<Resize>();
-    defs["cueList"] = schema_of_struct<CueList>();
-    defs["cues"] = SharedTable<Entries<CueState>>{}.patch_schema();
-    defs["levelTable"] = schema_of_struct<LevelTable>();
-    defs["renderJob"] = schema_of_struct<RenderJob>();
-    defs["frameHeader"] = schema_of_struct<FrameHeader>();
-    defs["stateDocument"] = schema_of_struct<State>();
-    defs["statePatch"] = patch_schema_of_struct<State>();
-    const Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                         {"$id", "urn:vrut-preview:protocol:1"},
-                         {"title", "VRUT Preview, wire protocol, version 1"},
-                         {"anyOf", {reference("clientMessage"), reference("serverMessage")}},
-                         {"$defs", std::move(defs)}};
+    const std::pair<const char*, const FieldTable&> structs[] = {{"cameraOverlay", table_of<CameraOverlay>()},
+                                                                 {"camera", table_of<CameraState>()},
+                                                                 {"notice", table_of<Notice>()},
+                                                                 {"feature", table_of<Feature>()},
+                                                                 {"quality", table_of<Quality>()},
+                                                                 {"view", table_of<Resize>()},
+                                                                 {"cueList", table_of<CueList>()},
+                                                                 {"levelTable", table_of<LevelTable>()},
+                                                                 {"renderJob", table_of<RenderJob>()},
+                                                                 {"frameHeader", table_of<FrameHeader>()},
+                                                                 {"stateDocument", table_of<State>()}};
+    for (const auto& [name, table] : structs) defs[name] = schema_of(table);
+    defs["cues"] = bind(Entries{}, Of<SharedMap<CueState>>{})->patch_schema();
+    defs["statePatch"] = patch_schema_of(table_of<State>());
+    Json schema = Json::parse(R"({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": "urn:vrut-preview:protocol:1",
+        "title": "VRUT Preview, wire protocol, version 1",
+        "anyOf": [{"$ref": "#/$defs/clientMessage"}, {"$ref": "#/$defs/serverMessage"}]})");
+    schema["$defs"] = std::move(defs);
     return schema.dump(1) + "\n";
 }
 

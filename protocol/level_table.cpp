@@ -1,6 +1,6 @@
 #include "level_table.hpp"
 
-#include "descriptions.hpp"
+#include "file_descriptions.hpp"
 
 namespace vrut::protocol {
 

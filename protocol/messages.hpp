@@ -12,7 +12,8 @@
 #include <vector>
 
 /// What travels between clients and the server. CLIENT_MESSAGES.md and SERVER_MESSAGES.md tell the messages;
-/// descriptions.hpp has the names, limits and meanings of the members of the structs here.
+/// client_descriptions.hpp and server_descriptions.hpp have the names, limits and meanings of the members of
+/// the structs here.
 namespace vrut::protocol {
 
 inline constexpr int kVersion = 1;
@@ -36,6 +37,59 @@ enum class Role { control, view, host };
 enum class DrawMode { realistic, stylized };
 enum class UpAxis { y, z };
 enum class ImageFormat { jpeg, png };
+
+/// One sentence for a person that names the culprit, and a code for a program.
+struct Error {
+    std::optional<std::int64_t> id;
+    std::string code, message;
+};
+
+/// What people should know, as an Error.
+struct Notice {
+    std::string code, message;
+    bool operator==(const Notice&) const = default;
+};
+
+namespace notice_code {
+inline constexpr const char *scene = "scene",                              // of the scene's file
+    *software = "software",                                                // drawn without a graphics card
+        *not_kept = "not-kept", *unusable_changes = "unusable-changes",    // what clients change of a scene
+                                    *recording_ended = "recording-ended",  //
+                                        *not_drawn = "not-drawn",
+                            *not_encoded = "not-encoded",  // what is to be seen now
+                                *no_memory = "no-memory",
+                            *smaller = "smaller",  // to draw it; to draw it whole
+                                *driver_restarted = "driver-restarted";
+inline constexpr std::array all{scene,     software,    not_kept,  unusable_changes, recording_ended,
+                                not_drawn, not_encoded, no_memory, smaller,          driver_restarted};
+}  // namespace notice_code
+
+namespace error_code {
+inline constexpr const char *bad_message = "bad-message", *out_of_range = "out-of-range",
+                            *unknown_member = "unknown-member", *read_only = "read-only",
+                            *unknown_node = "unknown-node", *unknown_cue = "unknown-cue",
+                            *unknown_frame = "unknown-frame", *stale_revision = "stale-revision",
+                            *not_in_control = "not-in-control", *not_allowed = "not-allowed",
+                            *refused_scene = "refused-scene", *busy = "busy", *too_many = "too-many",
+                            *failed = "failed";
+inline constexpr std::array all{bad_message,   out_of_range,  unknown_member, read_only,      unknown_node,
+                                unknown_cue,   unknown_frame, stale_revision, not_in_control, not_allowed,
+                                refused_scene, busy,          too_many,       failed};
+}  // namespace error_code
+
+struct Quality {
+    enum class Level { moving, still };
+    enum class Subsampling { yuv420, yuv444 };
+    Level level = Level::still;
+    double scale = 1;
+    int samples = 1;
+    double detail = 0;  ///< pixels of error allowed in the meshes
+    int jpeg_quality = 90;
+    Subsampling subsampling = Subsampling::yuv444;
+    std::optional<double> error =
+        {};  ///< mean FLIP against full accuracy, as measured for this level; none: not known
+    bool operator==(const Quality&) const = default;
+};
 
 // --- client to server
 
@@ -169,6 +223,14 @@ struct Point {
     std::optional<std::int64_t> frame;  ///< none: the present view
 };
 
+/// Where a camera stands, and how.
+struct Pose {
+    glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0};
+    glm::dvec3 center{0};  ///< of rotation
+    double fov = 40;       ///< the vertical angle of view in degrees
+    bool operator==(const Pose&) const = default;
+};
+
 /// Members of a camera, to be laid over another; `node` first.
 struct CameraOverlay {
     std::optional<std::int64_t> node;
@@ -176,6 +238,9 @@ struct CameraOverlay {
     std::optional<double> fov;
     bool operator==(const CameraOverlay&) const = default;
 };
+inline CameraOverlay overlay_of(const Pose& pose) {
+    return {{}, pose.eye, pose.focus, pose.up, pose.center, pose.fov};
+}
 
 /// Another view than the present one: the scene as a cue shows it, and a camera laid over that.
 struct OtherView {
@@ -264,208 +329,6 @@ struct ClientMessage {
                  Fly, Tree, Open, Scenes, Record, Control, Shown, Share, Point, Cue, Check>
         payload;
     std::string text = {};  ///< as it came over the wire; empty where it did not
-};
-
-// --- server to client
-
-struct Limits {
-    std::size_t max_message = kMaxMessageBytes;
-    int max_depth = kMaxDepth;
-    int max_grants = kMaxGrants;
-    std::int64_t max_pixels = 0;
-    int messages_per_second = 0;
-    std::size_t max_server_message = kMaxServerMessageBytes;
-};
-
-/// What a client needs to foretell what input does to the view.
-struct InputRules {
-    glm::dvec3 wheel_steps{1};  ///< what is one step, in pixels, lines and pages
-    double wheel_zoom = 1;      ///< a step away from the user divides the distance by it
-    double drag_zoom = 1;       ///< and so does a zooming drag over the view's height, upwards
-    /// What a drag does by the buttons held, as of `PointerEvent.buttons`: `rotate`, `pan`, `zoom`. By
-    /// navigation style, of those in which no key has a part in it.
-    std::map<std::string, std::map<std::string, std::string>> drags;
-    std::vector<std::string> keys;            ///< `KeyboardEvent.key` of those with a meaning
-    std::vector<std::string> repeating_keys;  ///< of these, those that go on while they are held
-};
-
-struct Welcome {
-    int version = kVersion;
-    std::string server;  ///< the program's version
-    std::string client;
-    Role role = Role::view;
-    Limits limits;
-    InputRules input;
-    std::optional<std::int64_t> id = {};  ///< of the `hello`, where it had one
-};
-
-struct Ok {
-    std::int64_t id = 0;
-    std::int64_t revision = 0;
-    std::optional<std::string> name;  ///< of the event log
-};
-
-struct Snapped {
-    Feature feature;
-    glm::dvec3 point{0};           ///< world: the feature's first
-    std::vector<glm::dvec3> line;  ///< world: what it looks like; kMaxLine
-};
-
-struct Picked {
-    std::int64_t id = 0;
-    // Where something was hit:
-    std::optional<std::int64_t> node;
-    std::optional<std::string> name;
-    std::optional<std::vector<std::string>> path;  ///< names from the root, the last 32
-    std::optional<glm::dvec3> point, normal;       ///< world; the normal is geometric, towards the viewer
-    std::optional<double> distance;                ///< from the eye
-    std::optional<glm::dvec3> local;               ///< the point in the node's own space, where that has one
-    std::optional<Snapped> snapped = {};           ///< also where nothing was hit, beside the point
-};
-
-/// What a client points at now.
-struct Pointed {
-    std::string client;
-    std::optional<std::string> name;          ///< as others see it
-    std::optional<glm::dvec3> point, normal;  ///< world, as Picked's; none: it points at nothing any more
-};
-
-struct Flown {
-    std::int64_t id = 0;
-    bool completed = false;
-};
-
-struct TreeHinge {
-    glm::dvec3 axis{0, 1, 0};  ///< unit, in the node's own space, through its origin
-    double degrees = 0;        ///< signed: so far it opens
-    glm::dmat4 closed{1};      ///< the node's matrix as in the file
-};
-
-struct TreeNode {
-    std::int64_t id = 0;
-    std::string name, type;
-    std::optional<std::int64_t> parent;  ///< none: the root
-    bool active = true;
-    std::uint64_t children = 0;
-    std::uint64_t triangles = 0;  ///< of its own geometry
-    std::optional<std::int64_t> material;
-    std::optional<glm::dmat4> matrix = {};  ///< as it is now; none: the identity
-    std::optional<TreeHinge> hinge = {};
-    // Of a switch:
-    std::optional<int> active_child = {};  ///< as in the file
-    std::optional<std::vector<std::string>> choices =
-        {};  ///< its children's names, by rising id; kMaxChoices
-};
-
-struct TreePage {
-    std::int64_t id = 0;
-    std::vector<TreeNode> nodes;
-    std::optional<std::int64_t> next;  ///< `after` for the page that follows; none: this was the last
-};
-
-/// What of a list of cues does not go with the scene.
-struct Checked {
-    struct Problem {
-        std::optional<std::string> cue;  ///< none: the whole list
-        std::string message;
-        bool operator==(const Problem&) const = default;
-    };
-    std::int64_t id = 0;
-    std::vector<Problem> problems;
-    std::vector<std::string> fitting;  ///< names of the cues that have none
-};
-
-struct SceneList {
-    std::int64_t id = 0;
-    std::vector<std::string> scenes;  ///< names for `open`, sorted
-};
-
-/// Where others open the page, to watch only.
-struct SharedAddress {
-    std::int64_t id = 0;
-    std::string address;
-    std::vector<std::string> qr;  ///< it as a QR code: rows of 0 (light) and 1 (dark), without a quiet zone
-    bool loopback = false;        ///< no other machine reaches it
-};
-
-/// How far the loading of a scene is; once at the end either `done` or `refused`.
-struct Loading {
-    std::string scene;
-    double fraction = 0;
-    std::optional<bool> done;
-    std::optional<std::string> refused;  ///< a sentence
-};
-
-/// One sentence for a person that names the culprit, and a code for a program.
-struct Error {
-    std::optional<std::int64_t> id;
-    std::string code, message;
-};
-
-/// What people should know, as an Error.
-struct Notice {
-    std::string code, message;
-    bool operator==(const Notice&) const = default;
-};
-
-namespace notice_code {
-inline constexpr const char *scene = "scene",                              // of the scene's file
-    *software = "software",                                                // drawn without a graphics card
-        *not_kept = "not-kept", *unusable_changes = "unusable-changes",    // what clients change of a scene
-                                    *recording_ended = "recording-ended",  //
-                                        *not_drawn = "not-drawn",
-                            *not_encoded = "not-encoded",  // what is to be seen now
-                                *no_memory = "no-memory",
-                            *smaller = "smaller",  // to draw it; to draw it whole
-                                *driver_restarted = "driver-restarted";
-inline constexpr std::array all{scene,     software,    not_kept,  unusable_changes, recording_ended,
-                                not_drawn, not_encoded, no_memory, smaller,          driver_restarted};
-}  // namespace notice_code
-
-namespace error_code {
-inline constexpr const char *bad_message = "bad-message", *out_of_range = "out-of-range",
-                            *unknown_member = "unknown-member", *read_only = "read-only",
-                            *unknown_node = "unknown-node", *unknown_cue = "unknown-cue",
-                            *unknown_frame = "unknown-frame", *stale_revision = "stale-revision",
-                            *not_in_control = "not-in-control", *not_allowed = "not-allowed",
-                            *refused_scene = "refused-scene", *busy = "busy", *too_many = "too-many",
-                            *failed = "failed";
-inline constexpr std::array all{bad_message,   out_of_range,  unknown_member, read_only,      unknown_node,
-                                unknown_cue,   unknown_frame, stale_revision, not_in_control, not_allowed,
-                                refused_scene, busy,          too_many,       failed};
-}  // namespace error_code
-
-// --- of a frame, and what is measured of frames
-
-struct Quality {
-    enum class Level { moving, still };
-    enum class Subsampling { yuv420, yuv444 };
-    Level level = Level::still;
-    double scale = 1;
-    int samples = 1;
-    double detail = 0;  ///< pixels of error allowed in the meshes
-    int jpeg_quality = 90;
-    Subsampling subsampling = Subsampling::yuv444;
-    std::optional<double> error =
-        {};  ///< mean FLIP against full accuracy, as measured for this level; none: not known
-    bool operator==(const Quality&) const = default;
-};
-
-/// What the server measures.
-struct Stats {
-    struct Renderer {
-        double mean_render_ms = 0, median_render_ms = 0, p95_render_ms = 0;  ///< of the last 100 frames
-    };
-    struct Host {
-        std::string name;
-        std::int64_t revision = 0;     ///< that it shows
-        std::optional<double> lag_ms;  ///< from that revision's making to its report
-    };
-    std::optional<Renderer> renderer;  ///< none before the first frame
-    std::optional<Quality> quality;    ///< of the newest frame
-    std::map<std::string, Host> hosts;
-    int clients = 0, watchers = 0;
-    double frames_per_second = 0, bytes_per_second = 0;
 };
 
 }  // namespace vrut::protocol

@@ -1,6 +1,6 @@
 #include "render_job.hpp"
 
-#include "descriptions.hpp"
+#include "file_descriptions.hpp"
 
 namespace vrut::protocol {
 

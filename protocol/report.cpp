@@ -1,6 +1,6 @@
 #include "report.hpp"
 
-#include "descriptions.hpp"
+#include "state_descriptions.hpp"
 
 namespace vrut::protocol {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "descriptions.hpp"
+#include "state_descriptions.hpp"
 
 namespace vrut::protocol {
 
@@ -38,7 +38,8 @@ ReportedState read_reported(const StateDocument& state) {
     ReportedState reported;
     const Json& scene = section_of(state, "scene");
     for (const char* member : {"name", "file"})
-        if (reported.scene.empty()) reported.scene = kName.read(scene.value(member, Json("")), member);
+        if (reported.scene.empty())
+            reported.scene = read_string(scene.value(member, Json("")), member, kName.max);
     for (const auto& [name, note] : section_of(state, "markers").items())
         reported.notes[name] = read_struct<Marker>(read_object(note, name), "markers");
     for (const auto& [name, view] : in_order(section_of(state, "views")))

@@ -8,6 +8,7 @@
 
 #include "messages.hpp"
 #include "state.hpp"
+#include "state_document.hpp"
 
 namespace vrut::protocol {
 

@@ -63,19 +63,15 @@ struct SceneState {                      // r
     std::vector<Notice> notices;
 };
 
-struct CameraState {
+struct CameraState : Pose {
     std::optional<std::int64_t> node;  ///< the camera node that it stands at
     std::optional<std::string> name;   // r: of that node
-    glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
-    double fov = 40;
-    double near = 0.1, far = 100;  // r
+    double near = 0.1, far = 100;      // r
     bool operator==(const CameraState&) const = default;
 };
 
 /// The camera that hosts have while it is behind the room's.
-struct WallsState {  // r
-    glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
-    double fov = 40;
+struct WallsState : Pose {  // r
     double near = 0.1, far = 100;
     double behind_degrees = 0, behind_metres = 0;  ///< how far the view must turn, and the eye move
     bool operator==(const WallsState&) const = default;
@@ -152,18 +148,12 @@ struct NodeOverride {
 
 /// A note on a point of the scene.
 struct Marker {
-    /// The camera that it was made from.
-    struct View {
-        glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
-        double fov = 40;
-        bool operator==(const View&) const = default;
-    };
     glm::dvec3 point{0};
     std::optional<std::int64_t> node;  ///< that it moves with; `point` is in that node's space then
     std::string text;
     std::optional<std::string> author = {};  ///< by the name that others see
     std::optional<std::int64_t> time = {};   ///< when it was made: milliseconds since 1970, UTC
-    std::optional<View> view = {};
+    std::optional<Pose> view = {};           ///< the camera that it was made from
     bool done = false;
     bool operator==(const Marker&) const = default;
 };
@@ -212,9 +202,7 @@ struct UnitState {
 };
 
 /// A saved camera.
-struct ViewState {
-    glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
-    double fov = 40;
+struct ViewState : Pose {
     std::optional<double> order = {};  ///< among the views: the lowest first, then those without one
     bool operator==(const ViewState&) const = default;
 };
@@ -222,11 +210,6 @@ struct ViewState {
 /// What is shown at one point of a presentation, and how it comes to that. The members that have names of the
 /// state's sections are to be what those are then.
 struct CueState {
-    struct Camera {
-        glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
-        double fov = 40;
-        bool operator==(const Camera&) const = default;
-    };
     struct Lights {
         std::string active = "headlight";
         bool operator==(const Lights&) const = default;
@@ -244,7 +227,7 @@ struct CueState {
     std::string text;                  ///< for who speaks
     double ms = 1500;                  ///< how long the camera and what has a hinge are on their way
     Fly::Easing easing = Fly::Easing::smooth;
-    Camera camera;
+    Pose camera;
     Lights lights;
     Backgrounds backgrounds;
     Selection selection;
@@ -374,19 +357,32 @@ void sign_notes(const State& before, const nlohmann::json& patch, const std::opt
 /// A patch from the text of a JSON object.
 tl::expected<Patch, Error> parse_patch(std::string_view text);
 
-/// The text of the patch that leads from `starting` to what is kept of a scene in `state`: its views,
-/// markers, measures, unit, cues and nodes. "{}" where they are the same.
+/// The text of the patch that leads from `starting` to what is kept of a scene in `state`. "{}" where that is
+/// the same.
 std::string kept_changes(const State& starting, const State& state);
 /// Whether what is kept of a scene is equal in both.
 bool has_equal_kept(const State& a, const State& b);
 
-/// The document of a state, as clients see it.
+/// The document of a state, as clients see it (StateDocument::json()).
 std::shared_ptr<const nlohmann::json> document_of(const State& state);
 /// `starting` with what clients may change, and who steers, from a whole document (StateDocument::json()).
 tl::expected<State, Error> restored(const State& starting, const nlohmann::json& document);
 
-/// Returns true if the patch names no other sections than these.
-bool names_only(const nlohmann::json& patch, std::initializer_list<std::string_view> sections);
+/// A choice of the state's sections, which their descriptions make.
+enum class Sections {
+    kept,       ///< with the scene, where a server keeps what clients change
+    for_hosts,  ///< what hosts may patch, too
+};
+/// Returns true if the patch names no other sections.
+bool names_only(const nlohmann::json& patch, Sections sections);
+/// Their names, sorted.
+std::vector<std::string> names_of(Sections sections);
+
+/// `starting`, of a scene that is opened, with what goes on from the scene before.
+State opened(State starting, const State& before);
+
+/// Makes the state what a cue shows, but for its camera, and for what is known of the node that is selected.
+void lay_cue(const CueState& cue, State& state);
 
 /// Which members of `camera` a patch names; null names all.
 struct NamedCameraMembers {
@@ -398,50 +394,5 @@ NamedCameraMembers named_camera_members(const nlohmann::json& patch);
 /// A camera from the text of a JSON object with members of the state's `camera`; read-only and unknown
 /// members are ignored.
 tl::expected<CameraOverlay, Error> parse_camera(std::string_view text);
-
-/// One revision of the state as JSON, to be shared between threads. Sections that did not change are the same
-/// objects in both documents, which makes making and comparing documents cheap.
-class StateDocument {
-public:
-    StateDocument() = default;
-    /// The document after `previous`, one revision later; the same object contents where nothing changed.
-    static std::shared_ptr<const StateDocument> next(const StateDocument& previous, const State& state);
-    /// The same, with a later revision than the next.
-    static std::shared_ptr<const StateDocument> next(const StateDocument& previous, const State& state,
-                                                     std::int64_t revision);
-
-    /// The document that a message of encode() or encode_patch_from() leads to; that of a patch must lead
-    /// from `known`, which may be null for a whole one. Or a sentence that tells what is wrong with the text.
-    /// shows() is false for any state, and last_change() is its own revision.
-    static tl::expected<std::shared_ptr<const StateDocument>, std::string> received(
-        std::string_view text, const StateDocument* known);
-
-    /// What hosts get: the same revision, with the camera of `walls` as `camera`, which stands at no node
-    /// then. Null where they get this one. Its shows() is false for any state.
-    std::shared_ptr<const StateDocument> for_hosts() const;
-
-    std::int64_t revision() const { return revision_; }
-    bool shows(const State& state) const { return state_ == state; }
-    /// The `state` message.
-    std::string encode() const;
-    /// The document alone.
-    nlohmann::json json() const;
-    /// A member of the document; null where there is none.
-    const nlohmann::json& section(std::string_view name) const;
-    /// Who holds control; none: nobody.
-    std::optional<std::string> holder() const;
-    /// The `patch` message that leads from an earlier document to this one; `by` may be empty.
-    std::string encode_patch_from(const StateDocument& earlier, const std::string& by) const;
-    /// Of the same scene: else the difference may be as large as the document, and that is sent.
-    bool has_scene_of(const StateDocument& other) const;
-    /// Revision of the last change to anything that `patch` names.
-    std::int64_t last_change(const nlohmann::json& patch) const;
-
-private:
-    struct Section;
-    std::int64_t revision_ = 0;
-    State state_;
-    std::vector<std::shared_ptr<const Section>> sections_;
-};
 
 }  // namespace vrut::protocol

@@ -128,7 +128,7 @@ std::vector<protocol::RenderJob> jobs_of(const RenderArguments& arguments, const
     std::vector<protocol::RenderJob> jobs;
     for (const scene::Camera& camera : film.cameras) {
         job.image = static_cast<int>(jobs.size()) + 1;
-        job.camera = {{}, camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+        job.camera = protocol::overlay_of(room::pose_of(camera));
         jobs.push_back(job);
     }
     return jobs;

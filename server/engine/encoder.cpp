@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "engine/images.hpp"
+#include "room/scene_state.hpp"
 
 namespace vrut::server::engine {
 
@@ -78,15 +79,6 @@ void Encoder::give_spare(scene::Image image) {
     spare_ = std::move(image);
 }
 
-namespace {
-
-std::optional<protocol::FrameHeader::Pose> pose_of(const std::optional<scene::Camera>& camera) {
-    if (!camera) return std::nullopt;
-    return protocol::FrameHeader::Pose{camera->eye, camera->focus, camera->up, camera->center, camera->fov};
-}
-
-}  // namespace
-
 /// Refinements show what the frame before them showed.
 void Encoder::encode_depth(const warp::DepthMap& map, Picture& picture, EncodedPicture& encoded) {
     static_assert(warp::kMostBlocks <= protocol::kMostDepthBlocks);
@@ -100,7 +92,7 @@ void Encoder::encode_depth(const warp::DepthMap& map, Picture& picture, EncodedP
                          map.rows,
                          map.scale,
                          picture.background_turns,
-                         pose_of(picture.ahead),
+                         picture.ahead ? std::optional(room::pose_of(*picture.ahead)) : std::nullopt,
                          static_cast<std::int64_t>(bytes.size())};
         picture.depth_frame = header.frame;
     }

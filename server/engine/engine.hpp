@@ -35,6 +35,7 @@
 #include "scenes/library.hpp"
 #include "scenes/loader.hpp"
 #include "state.hpp"
+#include "state_document.hpp"
 
 namespace vrut::server::engine {
 

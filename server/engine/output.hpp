@@ -12,6 +12,7 @@
 #include "engine/picture.hpp"
 #include "room/answers.hpp"
 #include "state.hpp"
+#include "state_document.hpp"
 
 namespace vrut::server::engine {
 

@@ -7,6 +7,7 @@
 
 #include "observe/metrics.hpp"
 #include "state.hpp"
+#include "state_document.hpp"
 
 namespace vrut::server::net {
 

@@ -8,6 +8,7 @@
 #include "base/clock.hpp"
 #include "messages.hpp"
 #include "observe/metrics.hpp"
+#include "server_messages.hpp"
 
 namespace vrut::server::observe {
 

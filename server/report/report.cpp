@@ -17,9 +17,7 @@ using protocol::UnitState;
 
 namespace {
 
-OtherView view_of_note(const protocol::Marker::View& view) {
-    return {{{}, view.eye, view.focus, view.up, view.center, view.fov}, {}};
-}
+OtherView view_of_note(const protocol::Pose& pose) { return {protocol::overlay_of(pose), {}}; }
 
 /// Of one that has no limit.
 std::vector<OtherView> all_pictures(const ReportedState& state) {

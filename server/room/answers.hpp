@@ -10,6 +10,7 @@
 #include "frame_header.hpp"
 #include "messages.hpp"
 #include "plan/view.hpp"
+#include "server_messages.hpp"
 
 /// Values that a room gives to those around it, who need not know the room.
 namespace vrut::server::room {

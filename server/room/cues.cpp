@@ -7,26 +7,6 @@ namespace vrut::server::room {
 using protocol::Error;
 namespace code = protocol::error_code;
 
-scene::Camera camera_of(const protocol::CueState& cue) {
-    scene::Camera camera;
-    camera.eye = cue.camera.eye;
-    camera.focus = cue.camera.focus;
-    camera.up = cue.camera.up;
-    camera.center = cue.camera.center;
-    camera.fov = cue.camera.fov;
-    return camera;
-}
-
-void lay_cue(const protocol::CueState& cue, protocol::State& state) {
-    state.lights.active = cue.lights.active;
-    state.backgrounds.active = cue.backgrounds.active;
-    state.backgrounds.color = cue.backgrounds.color;
-    if (state.selection.node != cue.selection.node) state.selection = {cue.selection.node, {}, {}, {}, {}};
-    state.nodes = cue.nodes;
-    state.sections = cue.sections;
-    state.section_box = cue.section_box;
-}
-
 Error no_cue_named(const std::string& name) {
     return Error{{}, code::unknown_cue, "there is no cue '" + name + "'"};
 }
@@ -38,7 +18,7 @@ std::vector<Error> problems_of(const std::string& name, const protocol::CueState
     const auto add = [&](const char* code, const std::string& sentence) {
         problems.push_back({{}, code, path + sentence});
     };
-    const scene::Camera camera = camera_of(cue);
+    const scene::Camera camera = camera_of(cue.camera);
     if (!scene::is_valid_pose(camera, placed.bounds.radius()))
         add(code::out_of_range,
             "camera': eye and focus must be apart, and up neither zero nor along the view");

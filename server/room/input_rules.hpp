@@ -1,6 +1,7 @@
 #pragma once
 
 #include "messages.hpp"
+#include "server_messages.hpp"
 
 namespace vrut::server::room {
 

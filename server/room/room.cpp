@@ -260,19 +260,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     scene_ = loaded_.placed;
     mesh_edges_ = {};
     starting_ = starting_state(loaded_, aspect(), cover());
-    protocol::State next = starting_;
-    next.navigation = state_.navigation;
-    next.renderer.mode = state_.renderer.mode;
-    next.renderer.wireframe = state_.renderer.wireframe;
-    next.renderer.show_selection = state_.renderer.show_selection;
-    next.quality = state_.quality;
-    next.pointing = state_.pointing;
-    next.comfort = state_.comfort;
-    next.control = state_.control;
-    next.clients = state_.clients;
-    next.recording = state_.recording;
-    next.notices = state_.notices;
-    state_ = std::move(next);
+    state_ = protocol::opened(starting_, state_);
     at_home_ = !state_.camera.node;
     lay_changes();
     gestures_.restart(camera());
@@ -493,9 +481,9 @@ void Room::use_holders_size() {
     // What opens above the picture later does not move it.
     const bool fits_anew = same_size != view_size_ || before.inset == protocol::Inset{};
     if (at_home_ && fits_anew) {
-        const protocol::ViewState home = home_view(*scene_, aspect(), cover(), loaded_.picking_trees.get());
+        const protocol::Pose home = home_pose(*scene_, aspect(), cover(), loaded_.picking_trees.get());
         for (protocol::State* state : {&starting_, &state_}) {
-            state->views.set("home", home);
+            state->views.set("home", {home, {}});
             state->camera = state_of(camera_of(home), scene_->bounds);
         }
     }

@@ -26,6 +26,7 @@
 #include "room/steering.hpp"
 #include "scenes/loaded_scene.hpp"
 #include "state.hpp"
+#include "state_document.hpp"
 
 namespace vrut::server::room {
 

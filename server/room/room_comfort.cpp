@@ -49,9 +49,9 @@ void Room::jump_walls() {
 std::optional<protocol::LogHeader::Walls> Room::logged_walls() const {
     if (!walls_ || !walls_->due) return std::nullopt;
     const navigation::ComfortLimiter::Motion& motion = walls_->limiter.motion();
-    return protocol::LogHeader::Walls{view_state_of(motion.pose), view_state_of(motion.guide),
-                                      motion.velocity, motion.spin,
-                                      static_cast<double>((*walls_->due - time_).count()) / 1000};
+    return protocol::LogHeader::Walls{
+        protocol::ViewState{pose_of(motion.pose), {}}, protocol::ViewState{pose_of(motion.guide), {}},
+        motion.velocity, motion.spin, static_cast<double>((*walls_->due - time_).count()) / 1000};
 }
 
 std::optional<protocol::Error> Room::restore_walls(const protocol::LogHeader::Walls& walls) {
@@ -74,11 +74,8 @@ std::optional<protocol::WallsState> Room::walls_state() const {
     const scene::Camera& pose = walls_->limiter.pose();
     const navigation::Behind behind = navigation::behind(pose, camera());
     const scene::ClipRange range = scene::fit_clip_range(pose, scene_->bounds);
-    protocol::WallsState walls{pose.eye,  pose.focus, pose.up, pose.center, pose.fov, range.near,
-                               range.far, 0,          0};
-    walls.behind_degrees = std::min(behind.degrees, 180.0);
-    walls.behind_metres = behind.units * state_.unit.metres;
-    return walls;
+    return protocol::WallsState{pose_of(pose), range.near, range.far, std::min(behind.degrees, 180.0),
+                                behind.units * state_.unit.metres};
 }
 
 }  // namespace vrut::server::room

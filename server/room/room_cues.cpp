@@ -14,7 +14,7 @@ namespace code = protocol::error_code;
 namespace {
 
 protocol::Fly flight_to(const scene::Camera& camera, const CueState& cue) {
-    return {{{cue.ms, {{}, camera.eye, camera.focus, camera.up, camera.center, camera.fov}}}, cue.easing};
+    return {{{cue.ms, protocol::overlay_of(pose_of(camera))}}, cue.easing};
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ void Room::apply(const Received& received, const protocol::Cue& message) {
     if (!name) return;
     CueState cue = state_.cues->at(*name);
     cue.ms = message.ms.value_or(cue.ms);
-    scene::Camera aim = camera_of(cue);
+    scene::Camera aim = camera_of(cue.camera);
     if (message.camera != protocol::CameraOverlay{}) {
         const auto laid = this->laid({message.camera, name});
         if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);
@@ -110,8 +110,7 @@ std::optional<Error> Room::use_cues(protocol::State& next) const {
         if (before != state_.cues->end() && before->second == cue) continue;
         const std::vector<Error> problems = problems_of(name, cue, starting_, *scene_);
         if (!problems.empty()) return problems.front();
-        const scene::Camera camera = scene::with_orthogonal_up(camera_of(cue));
-        cue.camera = {camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+        cue.camera = pose_of(scene::with_orthogonal_up(camera_of(cue.camera)));
     }
     next.cues.set(std::move(cues));
     return std::nullopt;

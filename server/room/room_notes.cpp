@@ -4,19 +4,6 @@
 namespace vrut::server::room {
 
 using protocol::Error;
-using protocol::Marker;
-
-namespace {
-
-scene::Camera note_camera_of(const Marker::View& view) {
-    return {view.eye, view.focus, view.up, view.center, view.fov};
-}
-
-Marker::View note_view_of(const scene::Camera& camera) {
-    return {camera.eye, camera.focus, camera.up, camera.center, camera.fov};
-}
-
-}  // namespace
 
 std::optional<Error> Room::use_notes(protocol::State& next, const scene::PlacedScene& placed) const {
     if (next.markers == state_.markers) return std::nullopt;
@@ -25,9 +12,9 @@ std::optional<Error> Room::use_notes(protocol::State& next, const scene::PlacedS
         const auto before = state_.markers->find(name);
         if (!note.view || (before != state_.markers->end() && before->second == note)) continue;
         const auto camera =
-            overlaid(note_camera_of(*note.view), {}, placed, "'markers." + name.substr(0, 40) + ".view'");
+            overlaid(camera_of(*note.view), {}, placed, "'markers." + name.substr(0, 40) + ".view'");
         if (!camera) return camera.error();
-        note.view = note_view_of(*camera);
+        note.view = pose_of(*camera);
     }
     next.markers.set(std::move(notes));
     return std::nullopt;

@@ -9,11 +9,24 @@ using protocol::Error;
 using protocol::Role;
 namespace code = protocol::error_code;
 
+namespace {
+
+/// Their names as a sentence has them.
+std::string listed(protocol::Sections sections) {
+    const std::vector<std::string> names = protocol::names_of(sections);
+    std::string text = "'" + names.front() + "'";
+    for (std::size_t i = 1; i < names.size(); ++i)
+        text += (i + 1 < names.size() ? ", '" : " and '") + names[i] + "'";
+    return text;
+}
+
+}  // namespace
+
 void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (clients_[received.client].role == Role::host &&
-        !protocol::names_only(*patch.patch, {"camera", "nodes", "selection"}))
+        !protocol::names_only(*patch.patch, protocol::Sections::for_hosts))
         return reject(received, code::not_allowed,
-                      "a host may patch nothing but 'camera', 'nodes' and 'selection'");
+                      "a host may patch nothing but " + listed(protocol::Sections::for_hosts));
     if (!may_steer(received)) return;
     if (patch.if_revision && options_.judges() && document()->last_change(*patch.patch) > *patch.if_revision)
         return reject(
@@ -52,10 +65,9 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
 std::optional<Error> Room::use_changes() {
     const auto patch = protocol::parse_patch(loaded_.changes);
     if (!patch) return patch.error();
-    if (!protocol::names_only(*patch->patch, {"views", "markers", "measures", "unit", "cues", "nodes"}))
-        return Error{{},
-                     code::bad_message,
-                     "it names other members than views, markers, measures, unit, cues and nodes"};
+    if (!protocol::names_only(*patch->patch, protocol::Sections::kept))
+        return Error{
+            {}, code::bad_message, "it names other members than " + listed(protocol::Sections::kept)};
     auto next = protocol::patched(state_, starting_, *patch->patch);
     if (!next) return next.error();
     std::shared_ptr<const scene::PlacedScene> placed = scene_;
@@ -138,9 +150,7 @@ std::optional<Error> Room::use_views(protocol::State& next, const scene::PlacedS
                          code::out_of_range,
                          "'views." + name.substr(0, 40) +
                              "': eye and focus must be apart, and up neither zero nor along the view"};
-        const std::optional<double> order = view.order;
-        view = view_state_of(scene::with_orthogonal_up(pose));
-        view.order = order;
+        view = {pose_of(scene::with_orthogonal_up(pose)), view.order};
     }
     next.views.set(std::move(views));
     return std::nullopt;

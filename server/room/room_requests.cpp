@@ -72,7 +72,7 @@ tl::expected<Room::Laid, Error> Room::laid(const protocol::OtherView& other) {
         if (cue == state_.cues->end()) return tl::unexpected(no_cue_named(*other.cue));
         lay_cue(cue->second, laid.state);
         if (auto error = use_laid_nodes(laid.state, laid.placed)) return tl::unexpected(*std::move(error));
-        laid.state.camera = state_of(camera_of(cue->second), laid.placed->bounds);
+        laid.state.camera = state_of(camera_of(cue->second.camera), laid.placed->bounds);
     }
     const scene::Camera camera = camera_of(laid.state.camera);
     const auto moved = overlaid(camera, other.camera, *laid.placed, "camera");

@@ -172,7 +172,7 @@ protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
                              .notices = loaded.notices});
     state.cameras = camera_names(scene);
     state.materials = material_names(scene);
-    state.views.set("home", home_view(placed, aspect, cover, loaded.picking_trees.get()));
+    state.views.set("home", {home_pose(placed, aspect, cover, loaded.picking_trees.get()), {}});
     const scene::Index node = scene::first_camera_node(placed);
     state.camera = node != scene::kNone ? state_at_node(*scene::camera_at(placed, node), placed, node)
                                         : state_of(camera_of(state.views->at("home")), placed.bounds);
@@ -191,12 +191,12 @@ void count_classes(protocol::State& state, const scene::PlacedScene& placed) {
     state.renderer.reflective = counts.reflective;
 }
 
-protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect, const navigation::Cover& cover,
-                              const mesh::PickingTrees* trees) {
+protocol::Pose home_pose(const scene::PlacedScene& placed, double aspect, const navigation::Cover& cover,
+                         const mesh::PickingTrees* trees) {
     const scene::Index node = scene::first_camera_node(placed);
-    return view_state_of(node != scene::kNone
-                             ? *scene::camera_at(placed, node)
-                             : navigation::home_camera(fit_target(placed, 0, trees), aspect, cover));
+    return pose_of(node != scene::kNone
+                       ? *scene::camera_at(placed, node)
+                       : navigation::home_camera(fit_target(placed, 0, trees), aspect, cover));
 }
 
 navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,
@@ -207,29 +207,17 @@ navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index 
     return {support.bounds(), support};
 }
 
-scene::Camera camera_of(const protocol::CameraState& state) {
-    return {state.eye, state.focus, state.up, state.center, state.fov};
+scene::Camera camera_of(const protocol::Pose& pose) {
+    return {pose.eye, pose.focus, pose.up, pose.center, pose.fov};
 }
 
-scene::Camera camera_of(const protocol::ViewState& view) {
-    return {view.eye, view.focus, view.up, view.center, view.fov};
-}
-
-protocol::ViewState view_state_of(const scene::Camera& camera) {
-    return {camera.eye, camera.focus, camera.up, camera.center, camera.fov, {}};
+protocol::Pose pose_of(const scene::Camera& camera) {
+    return {camera.eye, camera.focus, camera.up, camera.center, camera.fov};
 }
 
 protocol::CameraState state_of(const scene::Camera& camera, const math::Bounds& bounds) {
     const scene::ClipRange range = scene::fit_clip_range(camera, bounds);
-    protocol::CameraState state;
-    state.eye = camera.eye;
-    state.focus = camera.focus;
-    state.up = camera.up;
-    state.center = camera.center;
-    state.fov = camera.fov;
-    state.near = range.near;
-    state.far = range.far;
-    return state;
+    return {pose_of(camera), {}, {}, range.near, range.far};
 }
 
 protocol::CameraState state_at_node(const scene::Camera& camera, const scene::PlacedScene& placed,

@@ -17,18 +17,17 @@ namespace vrut::server::room {
 /// The state of a scene as its file says, its camera at home for a view of `aspect`.
 protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
                                const navigation::Cover& cover = {});
-/// The view with which a scene opens: its first camera node's, or else the scene fitted to the view. `trees`
+/// The pose with which a scene opens: its first camera node's, or else the scene fitted to the view. `trees`
 /// change the time that it takes; null: none.
-protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect, const navigation::Cover& cover,
-                              const mesh::PickingTrees* trees);
+protocol::Pose home_pose(const scene::PlacedScene& placed, double aspect, const navigation::Cover& cover,
+                         const mesh::PickingTrees* trees);
 /// What is shown at and below a node, less what presents it, and what planes cut away unless that is all.
 navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,
                                  const mesh::PickingTrees* trees,
                                  std::span<const scene::ClipPlane> clip_planes = {});
 
-scene::Camera camera_of(const protocol::CameraState& state);
-scene::Camera camera_of(const protocol::ViewState& view);
-protocol::ViewState view_state_of(const scene::Camera& camera);
+scene::Camera camera_of(const protocol::Pose& pose);
+protocol::Pose pose_of(const scene::Camera& camera);
 /// Near and far are refitted to the scene; the camera stands at no node.
 protocol::CameraState state_of(const scene::Camera& camera, const math::Bounds& bounds);
 /// The same at camera node `node`.

@@ -4,6 +4,7 @@
 
 #include "messages.hpp"
 #include "scene/scene.hpp"
+#include "server_messages.hpp"
 
 namespace vrut::server::room {
 

@@ -12,7 +12,7 @@ const HEAD = `The sentences of the program, as its source has them; {} stands fo
 notice, or "log" before the name of an event. Written by sentences.test.js.
 `;
 // What these print is no such sentence: help, charts, names of settings, fields of HTTP, the schema, the usage of an example, words of comments.
-const LEFT_OUT = /^(server\/commands\/(command_line|completion|manual)|server\/measure\/(calibrate|charts|experiments|page|plot|rows|settings|time_charts)|server\/observe\/metrics|server\/net\/(http|page)_response|render\/io\/assimp\/up_axis_guess|protocol\/((event_log_|room_relay_)?descriptions|json_schema|client\/example_host))\.[ch]pp$/;
+const LEFT_OUT = /^(server\/commands\/(command_line|completion|manual)|server\/measure\/(calibrate|charts|experiments|page|plot|rows|settings|time_charts)|server\/observe\/metrics|server\/net\/(http|page)_response|render\/io\/assimp\/up_axis_guess|protocol\/(\w+_descriptions|json_schema|client\/example_host))\.[ch]pp$/;
 
 /** The strings, names and signs of C++ source, without comments and what the preprocessor reads. */
 function tokens(source) {

@@ -4,6 +4,7 @@
 
 #include "codec.hpp"
 #include "state.hpp"
+#include "state_document.hpp"
 #include "tokens.hpp"
 
 using namespace vrut::protocol;

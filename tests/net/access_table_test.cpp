@@ -342,11 +342,11 @@ void check_file(const std::string& path, const std::string& text) {
 
 TEST_CASE("every type of client message stands in the table of who may send it") {
     const std::vector<MessageType> types = message_types();
-    protocol::for_each_client_type([&](const protocol::MessageTraits& traits, const auto&) {
+    for (const auto& [traits, prototype] : protocol::client_message_types()) {
         const auto is_of_type = [&](const MessageType& type) { return type.message["type"] == traits.type; };
         CAPTURE(traits.type);
         CHECK((std::any_of(types.begin(), types.end(), is_of_type) || traits.type == std::string("hello")));
-    });
+    }
 }
 
 TEST_CASE("who may do what: every route, token and Origin, and every message, role and token") {

@@ -9,6 +9,7 @@
 
 #include "codec.hpp"
 #include "examples.hpp"
+#include "state_document.hpp"
 
 using namespace vrut::protocol;
 using nlohmann::json;
@@ -87,12 +88,12 @@ TEST_CASE("every member of a log's header is read") {
     CHECK(read.clients[1].name == "Wall");
     CHECK(read.view == Resize{1280, 720, 1});
     CHECK(read.at_home);
-    CHECK(read.home == ViewState{{1, 2, 3}, {4, 5, 6}, {0, 1, 0}, {7, 8, 9}, 33});
+    CHECK(read.home == ViewState{{{1, 2, 3}, {4, 5, 6}, {0, 1, 0}, {7, 8, 9}, 33}, {}});
     REQUIRE(read.frames.size() == 1);
     CHECK(read.frames[0].frame == 17);
     CHECK(read.frames[0].view == Resize{640, 480, 0.5});
     const CameraState camera{
-        4, "Driver", {0.1, 0.2, 0.30000000000000004}, {1, 2, 3}, {0, 0, 1}, {4, 5, 6}, 33.3, 0.001, 1e9};
+        {{0.1, 0.2, 0.30000000000000004}, {1, 2, 3}, {0, 0, 1}, {4, 5, 6}, 33.3}, 4, "Driver", 0.001, 1e9};
     CHECK(read.frames[0].camera == camera);
     REQUIRE(read.flight.has_value());
     CHECK(read.flight->client == "c1");

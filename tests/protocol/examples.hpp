@@ -30,7 +30,7 @@ inline vrut::protocol::State make_start() {
     state.lights.items.set("headlight", {"Headlight", "point", {1, 1, 1, 1}, {1, 0, 0}});
     state.lights.items.set("7", {"Sun", "directional", {1, 1, 0.5, 1}, {1, 0.25, 0}});
     state.backgrounds.items.set("11", {"Studio", {0.5, 0.5, 0.5, 1}, {}});
-    state.views.set("home", {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0}, 40});
+    state.views.set("home", {{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0}, 40}, {}});
     return state;
 }
 /// The same each time, with the same scene.

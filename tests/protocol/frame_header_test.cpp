@@ -26,7 +26,7 @@ TEST_CASE("a header that is encoded once says the same as one that is encoded fo
     both(0, {});
     header.depth = FrameHeader::Depth{4, 160, 90, 0.25, true, {}, 5119};
     both(16, {});
-    header.depth->camera = FrameHeader::Pose{{1, 2, 3}, {0.1, 0, 0}, {0, 1, 0}, {4, 5, 6}, 30};
+    header.depth->camera = Pose{{1, 2, 3}, {0.1, 0, 0}, {0, 1, 0}, {4, 5, 6}, 30};
     header.camera.pose.name = ",\"depth\":{\"bytes\":7}";
     both(17, 2.5);
     both(kMaxInteger, 0);

@@ -9,6 +9,7 @@
 #include "examples.hpp"
 #include "frame_header.hpp"
 #include "repository_files.hpp"
+#include "state_document.hpp"
 
 using namespace vrut::protocol;
 using nlohmann::json;
@@ -96,7 +97,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     state.camera.node = 4, state.camera.name = "Driver";
     state.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}, 5};
     state.nodes.set("5", {false, -1, glm::dmat4(1), 3});
-    const Marker::View view{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0}, 40};
+    const Pose view{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0}, 40};
     state.markers.set("Scratch", {{1, 2, 3}, 5, "here", "Bea", 1'764'345'600'000, view, true});
     state.sections.set("Lengthwise", {{0, 0, 1}, 0.25, true, true, false});
     state.control = {"c1", "Bea", true};

@@ -213,12 +213,12 @@ std::string region(const std::string& name, const json& definitions) {
     std::string text;
     // The sections of the state have tables of their own.
     Table table{"", {"type", "event"}, name != "stateDocument"};
-    vrut::protocol::for_each_client_type([&](const vrut::protocol::MessageTraits& traits, const auto&) {
+    for (const auto& [traits, prototype] : vrut::protocol::client_message_types()) {
         const json type = schema.value(json::json_pointer("/properties/type/const"), "");
-        if (!name.starts_with("client") || type != traits.type) return;
+        if (!name.starts_with("client") || type != traits.type) continue;
         text = senders(traits);
         table.left_out.push_back("id");
-    });
+    }
     table.add_inner(schema, "");
     if (table.rows.empty()) return text + "It has no members of its own.\n";
     return text + "| member | type and range | presence | meaning |\n|---|---|---|---|\n" + table.rows;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "state.hpp"
+#include "state_document.hpp"
 
 using namespace vrut::protocol;
 

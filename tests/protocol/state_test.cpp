@@ -10,6 +10,7 @@
 #include "codec.hpp"
 #include "examples.hpp"
 #include "repetitions.hpp"
+#include "state_document.hpp"
 #include "tokens.hpp"
 
 using namespace vrut::protocol;
@@ -150,9 +151,9 @@ TEST_CASE("what is patched has the value that was given") {
     // Row by row: the second number is in the first row's second column.
     const glm::dmat4 matrix{{1, 5, 9, 13}, {2, 6, 10, 14}, {3, 7, 11, 15}, {4, 8, 12, 16}};
     expected.nodes.set("5", {false, -1, matrix, 3});
-    const Marker::View view{{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60};
+    const Pose view{{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60};
     expected.markers.set("Scratch", {{1, 2, 3}, 5, "here", "Bea", 7, view, true});
-    expected.views.set("side", {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60, -1.5});
+    expected.views.set("side", {{{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60}, -1.5});
     expected.sections.set("cut", {{0, 0, -1}, 1.5, false, false, true});
     expected.section_box = {{-1, -2, -3}, {1, 2, 3}, true, false, true};
     expected.measures.set("gap", {MeasureKind::length, {{3, Snap::edge, {{1, 2, 3}, {0, 0, 0}, {4, 5, 6}}}}});
@@ -543,13 +544,48 @@ TEST_CASE("markers are added, changed and removed") {
     CHECK_FALSE(patched(state, start(), json::parse(R"({"markers":{"a":{"text":"x"}}})")).has_value());
 }
 
+TEST_CASE("what is kept with a scene, and what hosts may patch, their descriptions say") {
+    CHECK(names_of(Sections::kept) ==
+          std::vector<std::string>{"cues", "markers", "measures", "nodes", "unit", "views"});
+    CHECK(names_of(Sections::for_hosts) == std::vector<std::string>{"camera", "nodes", "selection"});
+    const auto names_only = [](const char* patch, Sections sections) {
+        return vrut::protocol::names_only(json::parse(patch), sections);
+    };
+    CHECK(names_only(R"({"camera":{},"nodes":null})", Sections::for_hosts));
+    CHECK_FALSE(names_only(R"({"camera":{},"nodes":null})", Sections::kept));
+    CHECK_FALSE(names_only(R"({"none":{}})", Sections::kept));
+}
+
+TEST_CASE("another scene is opened: settings go on, what belongs to the scene does not") {
+    State before = start();
+    before.quality.preference = 0.25;
+    before.renderer = {DrawMode::stylized, true, false, 1, 2, 3};
+    before.navigation.pan_speed = 2;
+    before.control.holder = "c1";
+    before.notices = {{"no-memory", "one"}};
+    before.camera.fov = 5;
+    before.unit.metres = 1;
+    before.views.set("mine", {});
+    State starting = start();
+    starting.renderer.solid = 7;
+    const State next = opened(starting, before);
+    CHECK(next.quality == before.quality);
+    CHECK(next.renderer == RendererState{DrawMode::stylized, true, false, 7, 0, 0});
+    CHECK(next.navigation == before.navigation);
+    CHECK(next.control == before.control);
+    CHECK(next.notices == before.notices);
+    CHECK(next.camera == starting.camera);
+    CHECK(next.unit == starting.unit);
+    CHECK(next.views == starting.views);
+}
+
 TEST_CASE("views are added, changed and removed; those of the start come back") {
     State state = after(start(), R"({"camera":{"eye":[7,8,9],"up":[0,0,1],"fov":55}})");
     state = after(state, R"({"views":{"here":{},"low":{"eye":[1,1,1]}}})");
-    CHECK(state.views->at("here") == ViewState{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
-    CHECK(state.views->at("low") == ViewState{{1, 1, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
+    CHECK(state.views->at("here") == ViewState{{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55}, {}});
+    CHECK(state.views->at("low") == ViewState{{{1, 1, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55}, {}});
     CHECK(after(state, R"({"views":{"b":{"eye":null,"fov":5}}})").views->at("b") ==
-          ViewState{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 5});
+          ViewState{{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 5}, {}});
     CHECK(after(state, R"({"views":{"low":{"eye":null}}})").views->at("low") == state.views->at("here"));
     // It was saved: where the camera goes does not move it, nor does a patch of nothing.
     state = after(state, R"({"camera":{"eye":[0,0,1]},"views":{"here":{}}})");

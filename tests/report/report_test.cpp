@@ -31,7 +31,7 @@ ReportedState with_notes(int notes) {
     state.scene = "Car";
     for (int i = 0; i < notes; ++i) {
         Marker note{{1, 2, 3}, {}, "text " + std::to_string(i)};
-        note.view = Marker::View{};
+        note.view = vrut::protocol::Pose{};
         note.view->fov = 20 + i % 100;
         state.notes["note " + std::to_string(1000 + i)] = note;
     }

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "state_document.hpp"
+
 using namespace vrut::protocol;
 using nlohmann::json;
 

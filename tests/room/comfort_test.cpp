@@ -4,6 +4,7 @@
 #include "event_log.hpp"
 #include "room/replay.hpp"
 #include "stage.hpp"
+#include "state_document.hpp"
 
 using namespace stage;
 

@@ -10,6 +10,7 @@
 #include "event_log_file.hpp"
 #include "folder_of_logs.hpp"
 #include "stage.hpp"
+#include "state_document.hpp"
 #include "temporary_folder.hpp"
 
 using namespace stage;

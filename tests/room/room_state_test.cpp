@@ -304,7 +304,7 @@ TEST_CASE("home of a turned part is that of its own points") {
             "vrut-text 1\ngeometry 1 vertices 4 " + vertices +
                 " triangles 2 0 1 2 0 2 3 end\nnode 1 \"Plank\" geometry geometry 1 " + matrix + " end",
             "plank.vrut");
-        return home_view(*scene.placed, 1.5, {}, nullptr);
+        return home_pose(*scene.placed, 1.5, {}, nullptr);
     };
     const auto turned =
         home("-5 -0.5 0 5 -0.5 0 5 0.5 0 -5 0.5 0", "matrix 0.8 -0.6 0 0 0.6 0.8 0 0 0 0 1 0 0 0 0 1");
@@ -429,7 +429,7 @@ TEST_CASE("a camera at a node that was moved stands where it was moved to") {
 TEST_CASE("what is kept and cannot be used: nothing of it counts, and a notice says so") {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"markers":{"m":{"point":[1,2,3]}},"nodes":{"99":{"active":false}}})", "99"},
-        {R"({"camera":{"fov":20}})", "views, markers, measures, unit, cues and nodes"},
+        {R"({"camera":{"fov":20}})", "'cues', 'markers', 'measures', 'nodes', 'unit' and 'views'"},
         {R"({"views":{"v":{"fov":"wide"}}})", "fov"},
         {R"({"measures":{"w":{"kind":"radius","picks":[
             {"node":99,"snap":"center","points":[[0,0,0],[1,0,0],[0,1,0]]}]}}})",
