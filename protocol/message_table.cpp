@@ -19,39 +19,39 @@ Key key(bool down) {
 }
 
 std::vector<ClientMessageType> all_types() {
-    using enum Senders;
+    using enum Right;
     using enum Steers;
     using enum Weight;
     return {
         // clang-format off
-    // type              senders           steers      recorded weight
-    {{"hello",         all,              no,         false, request}, Hello{}},
-    {{"resize",        all,              no,         true,  request}, Resize{}},
-    {{"frame",         all,              no,         false, stream},  FrameGrant{}},
-    {{"pointerdown",   control,          by_content, true,  stream},  pointer(Pointer::Event::down)},
-    {{"pointermove",   control,          by_content, true,  stream},  pointer(Pointer::Event::move)},
-    {{"pointerup",     control,          by_content, true,  stream},  pointer(Pointer::Event::up)},
-    {{"pointercancel", control,          by_content, true,  stream},  pointer(Pointer::Event::cancel)},
-    {{"wheel",         control,          yes,        true,  stream},  Wheel{}},
-    {{"keydown",       control,          yes,        true,  stream},  key(true)},
-    {{"keyup",         all,              no,         true,  stream},  key(false)},
-    {{"navigate",      control,          yes,        true,  request}, Navigate{}},
-    {{"fit",           control,          yes,        true,  request}, Fit{}},
-    {{"swing",         control,          yes,        true,  request}, Swing{}},
-    {{"patch",         control_and_host, by_content, true,  request}, Patch{}},
-    {{"pick",          all,              by_content, true,  request}, Pick{}},
-    {{"snapshot",      all,              no,         true,  request}, Snapshot{}},
-    {{"fly",           control,          yes,        true,  request}, Fly{}},
-    {{"cue",           control,          yes,        true,  request}, Cue{}},
-    {{"check",         all,              no,         false, request}, Check{}},
-    {{"tree",          all,              no,         true,  request}, Tree{}},
-    {{"open",          control,          yes,        true,  request}, Open{}},
-    {{"scenes",        all,              no,         true,  request}, Scenes{}},
-    {{"record",        control,          yes,        true,  request}, Record{}},
-    {{"control",       control,          no,         true,  request}, Control{}},
-    {{"share",         control,          no,         false, request}, Share{}},
-    {{"shown",         host,             no,         true,  request}, Shown{}},
-    {{"point",         all,              no,         false, stream},  Point{}},
+    // type              right          steers      recorded weight
+    {{"hello",         look,         no,         false, request}, Hello{}},
+    {{"resize",        look,         no,         true,  request}, Resize{}},
+    {{"frame",         look,         no,         false, stream},  FrameGrant{}},
+    {{"pointerdown",   hold_control, by_content, true,  stream},  pointer(Pointer::Event::down)},
+    {{"pointermove",   hold_control, by_content, true,  stream},  pointer(Pointer::Event::move)},
+    {{"pointerup",     hold_control, by_content, true,  stream},  pointer(Pointer::Event::up)},
+    {{"pointercancel", hold_control, by_content, true,  stream},  pointer(Pointer::Event::cancel)},
+    {{"wheel",         hold_control, yes,        true,  stream},  Wheel{}},
+    {{"keydown",       hold_control, yes,        true,  stream},  key(true)},
+    {{"keyup",         look,         no,         true,  stream},  key(false)},
+    {{"navigate",      hold_control, yes,        true,  request}, Navigate{}},
+    {{"fit",           hold_control, yes,        true,  request}, Fit{}},
+    {{"swing",         hold_control, yes,        true,  request}, Swing{}},
+    {{"patch",         present,      by_content, true,  request}, Patch{}},
+    {{"pick",          look,         by_content, true,  request}, Pick{}},
+    {{"snapshot",      look,         no,         true,  request}, Snapshot{}},
+    {{"fly",           hold_control, yes,        true,  request}, Fly{}},
+    {{"cue",           hold_control, yes,        true,  request}, Cue{}},
+    {{"check",         look,         no,         false, request}, Check{}},
+    {{"tree",          look,         no,         true,  request}, Tree{}},
+    {{"open",          hold_control, yes,        true,  request}, Open{}},
+    {{"scenes",        look,         no,         true,  request}, Scenes{}},
+    {{"record",        hold_control, yes,        true,  request}, Record{}},
+    {{"control",       hold_control, no,         true,  request}, Control{}},
+    {{"share",         hold_control, no,         false, request}, Share{}},
+    {{"shown",         drive_walls,  no,         true,  request}, Shown{}},
+    {{"point",         look,         no,         false, stream},  Point{}},
         // clang-format on
     };
 }

@@ -2,15 +2,12 @@
 
 #include <span>
 
-#include "messages.hpp"
+#include "rights.hpp"
 
 /// The one table of client messages. A new type of message is a struct (messages.hpp), the description of its
 /// members (client_descriptions.hpp), a row in the table, and the room's handler, Room::apply() of that
 /// struct.
 namespace vrut::protocol {
-
-/// The roles that may send a message.
-enum class Senders { all, control_and_host, control, host };
 
 /// If a message steers: its client must hold control, or takes it. `by_content`: its handler tells.
 enum class Steers { no, yes, by_content };
@@ -21,7 +18,7 @@ enum class Weight { stream, request };
 
 struct MessageTraits {
     const char* type;  ///< the word in `type`
-    Senders senders;
+    Right right;       ///< that its sender needs
     Steers steers;
     bool recorded;  ///< an accepted one is a line of the event log
     Weight weight;

@@ -75,7 +75,8 @@ bool is_finite(const Camera& camera) {
 }
 
 const char* name_of(Role role) {
-    return role == Role::control ? "control" : role == Role::view ? "view" : "host";
+    constexpr std::array kNames{"control", "view", "host"};
+    return kNames[static_cast<std::size_t>(role)];
 }
 
 /// Whether an HTTP request can have it as its target.

@@ -5,6 +5,7 @@
 #include "codec.hpp"
 #include "engine/encoder.hpp"
 #include "observe/log.hpp"
+#include "rights.hpp"
 
 namespace vrut::server::nats {
 
@@ -25,7 +26,7 @@ base::Clock::duration ms(double value) {
         std::chrono::duration<double, std::milli>(value));
 }
 
-bool is_viewer(const protocol::EdgeClient& client) { return client.role == protocol::Role::view; }
+bool is_viewer(const protocol::EdgeClient& client) { return !may(client.role, protocol::Right::present); }
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include "codec.hpp"
 #include "observe/log.hpp"
+#include "rights.hpp"
 
 namespace vrut::server::nats {
 
@@ -276,7 +277,7 @@ void RoomOwner::join(const std::string& edge, const protocol::EdgeClient& client
     const auto role = role_for_(client.role, client.token);
     if (!role || clients_.contains(client.client) || !is_of_edge(client.client, edge)) return;
     const std::uint64_t handled = std::max(client.handled, engine::kHelloSequence);
-    clients_[client.client] = {edge, role == protocol::Role::control, handled};
+    clients_[client.client] = {edge, may(*role, protocol::Right::hold_control), handled};
     engine_->push(
         engine::ClientJoined{client.client, *role, client.name, client.id, client.resume, {}, handled});
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "observe/log.hpp"
+#include "rights.hpp"
 
 namespace vrut::server::nats {
 
@@ -89,7 +90,7 @@ engine::SharedHooks SharedRoom::hooks() {
 /// Who is here, and what of their messages the log has.
 void SharedRoom::note(const protocol::LogLine& line) {
     if (const auto* connected = std::get_if<protocol::LogLine::Connected>(&line.what))
-        clients_[line.client] = {connected->role == protocol::Role::control, engine::kHelloSequence};
+        clients_[line.client] = {may(connected->role, protocol::Right::hold_control), engine::kHelloSequence};
     else if (std::holds_alternative<protocol::LogLine::Disconnected>(line.what))
         clients_.erase(line.client);
     else if (line.sequence > 0)
@@ -182,7 +183,7 @@ bool SharedRoom::load_state() {
     auto checkpoint = std::make_shared<room::Checkpoint>();
     clients_.clear();
     for (const protocol::LogHeader::Client& client : header->clients)
-        clients_[client.client] = {client.role == protocol::Role::control, client.sequence};
+        clients_[client.client] = {may(client.role, protocol::Right::hold_control), client.sequence};
     checkpoint->header = *std::move(header);
     if (const auto* what = std::get_if<protocol::LogLine::Revised>(&revised->what))
         checkpoint->revised = *what;

@@ -10,6 +10,7 @@
 #include "codec.hpp"
 #include "engine/images.hpp"
 #include "observe/log.hpp"
+#include "rights.hpp"
 #include "room/input_rules.hpp"
 
 namespace vrut::server::net {
@@ -224,7 +225,7 @@ void Connection::on_text(std::string_view text) {
 void Connection::forward(tl::expected<protocol::ClientMessage, protocol::Error> message,
                          std::string_view text) {
     engine::MessageReceived received{client_, std::move(message), base::Clock::now(), text.size(),
-                                     role_ == protocol::Role::control};
+                                     may(role_, protocol::Right::hold_control)};
     if (!received.message) received.unreadable = text;
     received.sequence = ++sequence_;
     const bool points =

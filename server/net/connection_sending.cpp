@@ -2,6 +2,7 @@
 #include "codec.hpp"
 #include "net/connection.hpp"
 #include "observe/log.hpp"
+#include "rights.hpp"
 
 namespace vrut::server::net {
 
@@ -134,7 +135,7 @@ void Connection::pump() {
 }
 
 DocumentUpdates& Connection::documents() const {
-    return role_ == protocol::Role::host ? room_->host_document : room_->document;
+    return may(role_, protocol::Right::drive_walls) ? room_->host_document : room_->document;
 }
 
 /// A client that has not joined the room gets no document: its first one tells who has control.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "net/connection.hpp"
+#include "rights.hpp"
 
 namespace vrut::server::net {
 
@@ -41,10 +42,11 @@ std::size_t ConnectionRegistry::clients() const {
 
 bool ConnectionRegistry::has_place_for(protocol::Role role, const protocol::Hello& hello,
                                        const ServedRoom& room) const {
-    const bool controls = role == protocol::Role::control;
+    using protocol::Right;
+    const bool controls = may(role, Right::hold_control);
     std::size_t places = max_clients;
     // Where no token is asked for, a whole audience may have this role: then nobody sends one.
-    if (role == protocol::Role::host || (controls && !hello.token.empty())) places += kReservedPlaces;
+    if (may(role, Right::drive_walls) || (controls && !hello.token.empty())) places += kReservedPlaces;
     if (controls && !hello.resume.empty() && hello.resume == room.holder_key)
         places = max_clients + kReservedPlaces + kPlacesToResume;
     return clients() < places;

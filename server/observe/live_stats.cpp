@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "rights.hpp"
+
 namespace vrut::server::observe {
 
 namespace {
@@ -82,8 +84,8 @@ std::optional<protocol::Stats> LiveStats::take(base::Clock::time_point now) {
     stats.quality = quality_;
     for (const auto& [id, client] : clients_) {
         ++stats.clients;
-        stats.watchers += client.role == protocol::Role::view;
-        if (client.role == protocol::Role::host && client.shown)
+        stats.watchers += !may(client.role, protocol::Right::present);
+        if (may(client.role, protocol::Right::drive_walls) && client.shown)
             stats.hosts[id] = {client.name, *client.shown, client.lag_ms};
     }
     // Rates since the last take, or since things began to happen again after a rest.

@@ -7,20 +7,11 @@
 
 namespace vrut::server::room {
 
+using protocol::may;
+using protocol::Right;
 using protocol::Role;
-using protocol::Senders;
 using protocol::Steers;
 namespace code = protocol::error_code;
-
-namespace {
-
-bool includes(Senders senders, Role role) {
-    if (role == Role::control) return senders != Senders::host;
-    if (role == Role::host) return senders != Senders::control;
-    return senders == Senders::all;
-}
-
-}  // namespace
 
 Room::Room(scenes::LoadedScene scene, RoomOptions options)
     : options_(std::move(options)),
@@ -44,7 +35,7 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     use_walls();
     write_recording(client, protocol::LogLine::Connected{role, clients_[client].name});
     write_journal(client, protocol::LogLine::Connected{role, clients_[client].name, resume_key});
-    if (role != Role::control) return;
+    if (!may(role, Right::hold_control)) return;
     if (options_.replaying) return;
     steering_.join(client, resume_key);
     show_holder();
@@ -60,9 +51,9 @@ void Room::list_clients() {
     using Entry = decltype(clients_)::const_pointer;
     std::vector<Entry> listed;
     for (const auto& entry : clients_)
-        if (entry.second.role != Role::view || !entry.second.name.empty()) listed.push_back(&entry);
+        if (may(entry.second.role, Right::present) || !entry.second.name.empty()) listed.push_back(&entry);
     std::ranges::sort(listed, {}, [](Entry entry) {
-        return std::pair(entry->second.role == Role::view, entry->second.arrival);
+        return std::pair(!may(entry->second.role, Right::present), entry->second.arrival);
     });
     listed.resize(std::min(listed.size(), protocol::kMaxListedClients));
     std::map<std::string, protocol::ClientState> clients;
@@ -136,7 +127,7 @@ bool Room::handle_message(const std::string& client, const protocol::ClientMessa
     if (!clients_.contains(client)) return false;  // it has left
     const Received received{client, message};
     return handle(received, at, [&] {
-        if (may_send(received, received.traits.senders) &&
+        if (may_send(received, received.traits.right) &&
             (received.traits.steers != Steers::yes || may_steer(received)))
             std::visit([&](const auto& payload) { apply(received, payload); }, message.payload);
     });
@@ -403,9 +394,9 @@ void Room::reject(const std::string& client, const protocol::Error& error) {
 
 // --- who steers
 
-bool Room::may_send(const Received& received, Senders senders) {
+bool Room::may_send(const Received& received, Right right) {
     Client& client = clients_[received.client];
-    if (includes(senders, client.role)) return true;
+    if (may(client.role, right)) return true;
     if (!received.is_input() || !std::exchange(client.knows_not_allowed, true))
         reject(received, code::not_allowed,
                std::string("the role '") + name_of(client.role) + "' may not do this");
@@ -413,17 +404,17 @@ bool Room::may_send(const Received& received, Senders senders) {
 }
 
 bool Room::may_steer(const Received& received) {
-    const bool may = clients_[received.client].role == Role::host
-                         ? steering_.is_quiet(time_) && !gestures_.any_pressed()
-                         : steering_.holds(received.client);
-    if (may || !options_.judges()) return true;
+    const bool is_free = may(clients_[received.client].role, Right::drive_walls)
+                             ? steering_.is_quiet(time_) && !gestures_.any_pressed()
+                             : steering_.holds(received.client);
+    if (is_free || !options_.judges()) return true;
     if (!received.is_input()) reject_not_in_control(received);
     return false;
 }
 
 void Room::reject_not_in_control(const Received& received) {
     const protocol::ControlState& control = state_.control;
-    const std::string remedy = clients_[received.client].role == Role::host
+    const std::string remedy = may(clients_[received.client].role, Right::drive_walls)
                                    ? "try again when that client has not steered for 1 s"
                                    : "'control' with the action 'ask' asks for it";
     reject(received, code::not_in_control,
@@ -436,7 +427,7 @@ void Room::steer(const Received& received) {
     const bool is_beside_flights =
         std::holds_alternative<protocol::Record>(payload) || std::holds_alternative<protocol::Swing>(payload);
     if (!is_beside_flights) end_flight(false);
-    if (clients_[received.client].role == Role::host) return;
+    if (may(clients_[received.client].role, Right::drive_walls)) return;
     steering_.steer(time_);
     if (!options_.replaying) return;
     if (std::holds_alternative<protocol::Pointer>(payload) && !steering_.holds(received.client))

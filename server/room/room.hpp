@@ -253,7 +253,7 @@ private:
 
     // --- who steers
     /// Returns true if its client's role is one of these; else it is rejected.
-    bool may_send(const Received& received, protocol::Senders senders);
+    bool may_send(const Received& received, protocol::Right right);
     /// Returns true if this message may steer; else it is rejected.
     bool may_steer(const Received& received);
     void reject_not_in_control(const Received& received);

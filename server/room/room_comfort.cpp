@@ -23,7 +23,7 @@ navigation::ComfortLimits limits_of(const protocol::State& state) {
 // It begins to step at what makes it move, and not at a clock's ticks: a log may begin at any time.
 void Room::use_walls() {
     const bool is_limited = state_.comfort.on && std::ranges::any_of(clients_, [](const auto& entry) {
-                                return entry.second.role == protocol::Role::host;
+                                return may(entry.second.role, protocol::Right::drive_walls);
                             });
     if (!is_limited) return walls_.reset();
     if (!walls_) walls_.emplace(Walls{navigation::ComfortLimiter(camera())});

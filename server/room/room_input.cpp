@@ -98,7 +98,7 @@ void Room::fit_selection() {
 
 void Room::apply(const Received& received, const protocol::Pick& pick) {
     using Then = protocol::Pick::Then;
-    if (pick.then && !(may_send(received, protocol::Senders::control) && may_steer(received))) return;
+    if (pick.then && !(may_send(received, protocol::Right::hold_control) && may_steer(received))) return;
     const auto seen = frame_named(received, pick.frame);
     if (!seen) return;
     const std::optional<mesh::Hit> hit = hit_at(*seen, pick.x, pick.y, pick.through);

@@ -6,7 +6,6 @@
 namespace vrut::server::room {
 
 using protocol::Error;
-using protocol::Role;
 namespace code = protocol::error_code;
 
 namespace {
@@ -23,8 +22,8 @@ std::string listed(protocol::Sections sections) {
 }  // namespace
 
 void Room::apply(const Received& received, const protocol::Patch& patch) {
-    if (clients_[received.client].role == Role::host &&
-        !protocol::names_only(*patch.patch, protocol::Sections::for_hosts))
+    const bool drives_walls = may(clients_[received.client].role, protocol::Right::drive_walls);
+    if (drives_walls && !protocol::names_only(*patch.patch, protocol::Sections::for_hosts))
         return reject(received, code::not_allowed,
                       "a host may patch nothing but " + listed(protocol::Sections::for_hosts));
     if (!may_steer(received)) return;
@@ -57,7 +56,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     gestures_.restart(camera());
     measure();
-    if (clients_[received.client].role == Role::host && named.any()) jump_walls();
+    if (drives_walls && named.any()) jump_walls();
     if (pointing_changes) use_pointing();
     answer(received);
 }

@@ -9,7 +9,7 @@ namespace code = protocol::error_code;
 bool Room::may_point(const std::string& client) const {
     const auto found = clients_.find(client);
     if (found == clients_.end()) return false;
-    return found->second.role == protocol::Role::control || state_.pointing.watchers;
+    return may(found->second.role, protocol::Right::hold_control) || state_.pointing.watchers;
 }
 
 void Room::apply(const Received& received, const protocol::Point& point) {

@@ -211,7 +211,7 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
 
 void Room::restore_clients(const std::vector<protocol::LogHeader::Client>& clients) {
     for (const protocol::LogHeader::Client& client : clients) {
-        if (client.role == protocol::Role::control) steering_.arrive(client.client, client.resume);
+        if (may(client.role, protocol::Right::hold_control)) steering_.arrive(client.client, client.resume);
         add_client(client.client, {client.role, client.wanted, client.name, client.resume});
     }
     if (state_.control.holder) steering_.take(*state_.control.holder);

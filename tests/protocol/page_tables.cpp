@@ -186,15 +186,15 @@ struct Table {
 
 /// Who may send a client message.
 std::string senders(const vrut::protocol::MessageTraits& traits) {
-    using vrut::protocol::Senders;
+    using vrut::protocol::Role;
     using vrut::protocol::Steers;
-    static const std::map<Senders, std::string> roles{{Senders::all, "`control`, `view`, `host`"},
-                                                      {Senders::control_and_host, "`control`, `host`"},
-                                                      {Senders::control, "`control`"},
-                                                      {Senders::host, "`host`"}};
+    std::string roles;
+    for (const Role role : {Role::control, Role::view, Role::host})
+        if (may(role, traits.right))
+            roles += std::string(roles.empty() ? "`" : ", `") + vrut::protocol::name_of(role) + "`";
     static const std::map<Steers, std::string> needs{
         {Steers::no, "no"}, {Steers::yes, "yes"}, {Steers::by_content, "see below"}};
-    return "Roles: " + roles.at(traits.senders) + ". Needs control: " + needs.at(traits.steers) +
+    return "Roles: " + roles + ". Needs control: " + needs.at(traits.steers) +
            ". In an event log: " + (traits.recorded ? "yes" : "no") + ".\n\n";
 }
 
