@@ -154,7 +154,6 @@ std::optional<std::string> Engine::why_unready() const {
 Engine::~Engine() {
     stop();
     thread_.join();
-    file_results_->close();
 }
 
 /// With what the engine adds to a scene that it shows: notices, and trees for picks, which are not awaited.

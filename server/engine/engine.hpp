@@ -283,6 +283,8 @@ private:
     std::shared_ptr<const mesh::DetailLevels> detail_;  ///< null until the scene's first frame was encoded
     std::int64_t scene_since_ = 1;                      ///< first frame of the scene shown
 
+    const ResultPost::Closing closing_{
+        file_results_};   // before any of the above ends, also where making it fails
     std::thread thread_;  // last: it uses all of the above
 };
 

@@ -25,6 +25,17 @@ public:
         const std::lock_guard lock(mutex_);
         push_ = nullptr;
     }
+    /// Closes a post at its own end.
+    class Closing {
+    public:
+        explicit Closing(std::shared_ptr<ResultPost> post) : post_(std::move(post)) {}
+        Closing(const Closing&) = delete;
+        Closing& operator=(const Closing&) = delete;
+        ~Closing() { post_->close(); }
+
+    private:
+        std::shared_ptr<ResultPost> post_;
+    };
 
 private:
     std::mutex mutex_;

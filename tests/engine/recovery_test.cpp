@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <future>
 
+#include "base/detached_thread.hpp"
 #include "base/drawing_errors.hpp"
+#include "engine/engine.hpp"
 #include "event_log_file.hpp"
 #include "full_disk.hpp"
 #include "plan/render_job.hpp"
@@ -174,6 +177,32 @@ TEST_CASE("a driver that never comes back ends the server with what it says") {
     CHECK(client.wait_for_close(15s) == 1001);
     thread.join();
     CHECK(sentence == "drawing has failed: nothing here draws");
+}
+
+TEST_CASE("an engine that cannot begin leaves nothing that would tell it later of work on files") {
+    std::promise<void> let_go;
+    const auto waits = let_go.get_future().share();
+    EngineOptions options;
+    options.scene = scene_of("vrut-text 1\nnode 1 \"Root\" assembly end\n");
+    options.scene.changes = "none";
+    options.scene.changes_fault = "a newer program has written it";
+    options.keep_changes = {[](const std::string&, const std::string&) {},
+                            [waits](const std::string&, const std::string&, const std::string&) {
+                                waits.wait();
+                                return std::string("aside");
+                            }};
+    const auto too_large = [] {
+        FrameRenderer renderer = FakeRenderer{}.factory()();
+        renderer.upload_step = [](const plan::View&) -> bool {
+            throw vrut::base::OutOfMemory("the scene is too large");
+        };
+        return renderer;
+    };
+    vrut::server::observe::Metrics metrics;
+    CHECK_THROWS_WITH(std::make_unique<Engine>(std::move(options), too_large, metrics, EngineCallbacks{}),
+                      doctest::Contains("the scene is too large"));
+    let_go.set_value();
+    CHECK(eventually([] { return vrut::server::base::detached_threads() == 0; }));
 }
 
 TEST_CASE("a recording that finds no room ends, with a notice for everybody and nothing else") {
