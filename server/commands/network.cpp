@@ -75,7 +75,7 @@ net::ServerOptions server_options(const NetworkArguments& arguments) {
 }
 
 void announce(net::Server& server, const net::ServerOptions& options, const std::string& path) {
-    server.stop_on_signals();  // before the address is printed: from then on somebody may stop it
+    server.heed_signals();  // before the address is printed: from then on somebody may stop it
     print_addresses(options, server.port(), path);
     observe::log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});
 }

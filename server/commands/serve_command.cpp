@@ -102,7 +102,7 @@ void serve_shared(const ServeArguments& arguments, net::ServerOptions options,
             continue;
         }
         if (std::exchange(is_announced, true))
-            server->stop_on_signals();
+            server->heed_signals();
         else
             announce(*server, options);
         options.listen.port = server->port();

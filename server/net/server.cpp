@@ -207,6 +207,26 @@ struct Server::Impl {
             reject_connection(std::move(socket));
     }
 
+    // --- signals
+
+    void wait_for_signals() {
+        signals.async_wait([this](boost::system::error_code error, int signal) {
+            if (error) return;
+            if (signal != SIGHUP || !options.tls || options.tls->authority()) return stop();
+            reload_certificates();
+            wait_for_signals();
+        });
+    }
+
+    void reload_certificates() {
+        try {
+            options.tls->reload();
+            observe::log_info("certificates_reloaded", {});
+        } catch (const std::runtime_error& error) {
+            observe::log_warning("certificates_kept", {{"reason", error.what()}});
+        }
+    }
+
     // --- the end
 
     void stop() {
@@ -258,11 +278,9 @@ observe::Metrics& Server::metrics() { return impl_->metrics; }
 
 engine::RoomEngine& Server::engine() { return *impl_->registry.rooms.at("")->engine; }
 
-void Server::stop_on_signals() {
+void Server::heed_signals() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) impl_->signals.add(signal);
-    impl_->signals.async_wait([this](boost::system::error_code error, int) {
-        if (!error) impl_->stop();
-    });
+    impl_->wait_for_signals();
 }
 
 void Server::run() {

@@ -86,8 +86,9 @@ public:
     engine::RoomEngine& engine();
     observe::Metrics& metrics();
 
-    /// From here on SIGTERM, SIGINT and SIGHUP do what stop() does.
-    void stop_on_signals();
+    /// From here on SIGTERM and SIGINT do what stop() does, and SIGHUP, too, where the server has no
+    /// certificates of files. Those it reads anew.
+    void heed_signals();
     /// Serves until stop(); clients get a goodbye, and it ends within 3 s. Throws std::runtime_error where
     /// drawing fails for good.
     void run();

@@ -42,11 +42,9 @@ std::string without_scope(const asio::ip::address& address) {
     return asio::ip::address_v6(address.to_v6().to_bytes()).to_string();
 }
 
-}  // namespace
-
-Tls::Tls(const std::filesystem::path& certificates, const std::filesystem::path& key)
-    : context_(new_context()) {
-    SSL_CTX* const native = context_.native_handle();
+ssl::context context_of(const std::filesystem::path& certificates, const std::filesystem::path& key) {
+    ssl::context context = new_context();
+    SSL_CTX* const native = context.native_handle();
     if (SSL_CTX_use_certificate_chain_file(native, certificates.c_str()) != 1)
         fail("--tls-cert", certificates, "cannot be read as certificates in PEM");
     if (X509_cmp_current_time(X509_get0_notAfter(SSL_CTX_get0_certificate(native))) <= 0)
@@ -56,11 +54,22 @@ Tls::Tls(const std::filesystem::path& certificates, const std::filesystem::path&
         fail("--tls-key", key, "can be read by everybody: chmod o= it");
     if (SSL_CTX_use_PrivateKey_file(native, key.c_str(), SSL_FILETYPE_PEM) != 1)
         fail("--tls-key", key, "cannot be read as a private key in PEM that belongs to the certificate");
+    return context;
 }
+
+}  // namespace
+
+Tls::Tls(const std::filesystem::path& certificates, const std::filesystem::path& key)
+    : files_{certificates, key}, context_(context_of(certificates, key)) {}
 
 Tls::Tls(CertificateAuthority authority) : authority_(std::move(authority)), context_(new_context()) {
     for (const std::string& address : network_addresses()) addresses_.insert(address);
     issue();
+}
+
+void Tls::reload() {
+    if (authority_) return;
+    context_ = context_of(files_.certificates, files_.key);  // connections keep what they have
 }
 
 ssl::context& Tls::context_for(const asio::ip::address& local) {

@@ -25,11 +25,19 @@ public:
     boost::asio::ssl::context& context_for(const boost::asio::ip::address& local);
     /// Null where the certificates are of files.
     const CertificateAuthority* authority() const { return authority_ ? &*authority_ : nullptr; }
+    /// Reads the files anew, for connections that begin from here on. Throws std::runtime_error, and then
+    /// goes on with what it has.
+    void reload();
 
 private:
+    /// In PEM.
+    struct Files {
+        std::filesystem::path certificates, key;
+    };
     void issue();
 
     std::optional<CertificateAuthority> authority_;
+    Files files_;  // without an authority
     boost::asio::ssl::context context_;
     std::set<std::string> addresses_;  // that the certificate names
     std::chrono::system_clock::time_point renew_at_ = std::chrono::system_clock::time_point::max();

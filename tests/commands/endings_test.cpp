@@ -9,7 +9,9 @@
 
 #include "environment_variable.hpp"
 #include "heap.hpp"
+#include "pem_files.hpp"
 #include "program.hpp"
+#include "raw_connection.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"
 
@@ -215,6 +217,35 @@ TEST_CASE("SIGTERM, SIGINT and SIGHUP while frames go to clients that do not tak
         }
         expect_end(program, signal, &presenter);
     }
+}
+
+TEST_CASE("SIGHUP makes a server with certificates of files read them anew, and does not end it") {
+    const TemporaryFolder folder;
+    const vrut::server::net::CertificateAuthority authority(folder.path() / "authority.pem");
+    const fs::path certificate = folder.path() / "certificate.pem", key = folder.path() / "key.pem";
+    const auto first = authority.issue({}), second = authority.issue({});
+    write_pem(first, certificate, key);
+    auto words = serve({"--tls-cert", certificate.string(), "--tls-key", key.string()});
+    std::ranges::replace(words, "error", "warning");
+    Program program(words);
+    const std::uint16_t port = program.port();
+    const auto shows = [port](const vrut::server::net::Certificate& issued) {
+        RawConnection connection(port, Over::tls);
+        return X509_cmp(SSL_get0_peer_certificate(connection.tls()), issued.x509.get()) == 0;
+    };
+    RawConnection open(port, Over::tls);
+    CHECK(shows(first));
+    write_pem(second, certificate, key);
+    CHECK(shows(first));
+    program.signal(SIGHUP);
+    CHECK(eventually([&] { return shows(second); }));
+    open.send("GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+    CHECK(open.answer().body == "ok\n");
+    fs::remove(key);
+    program.signal(SIGHUP);
+    CHECK(shows(second));
+    expect_end(program, SIGTERM);
+    CHECK(program.output().find("--tls-key") != std::string::npos);
 }
 
 TEST_CASE("SIGTERM while a large scene is loaded, at any moment of it") {

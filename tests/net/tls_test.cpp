@@ -13,6 +13,7 @@
 
 #include "net/addresses.hpp"
 #include "net/descriptors.hpp"
+#include "pem_files.hpp"
 #include "raw_websocket.hpp"
 #include "temporary_folder.hpp"
 
@@ -158,6 +159,28 @@ TEST_CASE("certificates and keys that cannot be used are refused with a sentence
                       doctest::Contains("good.key can be read by everybody: chmod o= it"));
     X509_gmtime_adj(X509_getm_notAfter(other.x509.get()), -60);
     CHECK_THROWS_WITH(Tls(write("old.pem", other, false), key), doctest::Contains("old.pem has expired"));
+}
+
+TEST_CASE(
+    "certificate and key are read anew when they were renewed; where they cannot be, the old ones stay") {
+    const TemporaryFolder folder;
+    const CertificateAuthority authority(folder.path() / "a.pem");
+    const auto certificate = folder.path() / "c.pem", key = folder.path() / "k.pem";
+    const Certificate first = authority.issue({}), second = authority.issue({"198.51.100.9"});
+    write_pem(first, certificate, key);
+    Tls tls(certificate, key);
+    const auto shows = [&](const Certificate& issued) {
+        SSL_CTX* const context = tls.context_for(boost::asio::ip::make_address("127.0.0.1")).native_handle();
+        return X509_cmp(SSL_CTX_get0_certificate(context), issued.x509.get()) == 0;
+    };
+    CHECK(shows(first));
+    write_pem(second, certificate, key);
+    CHECK(shows(first));
+    tls.reload();
+    CHECK(shows(second));
+    std::filesystem::remove(key);
+    CHECK_THROWS_WITH(tls.reload(), doctest::Contains("--tls-key"));
+    CHECK(shows(second));
 }
 
 TEST_CASE(
