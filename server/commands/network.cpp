@@ -70,7 +70,14 @@ net::ServerOptions server_options(const NetworkArguments& arguments) {
     options.max_clients = arguments.max_clients;
     options.tls = tls_of(arguments);
     options.access = net::read_access(arguments.token_file);
-    options.access.allowed_origins = arguments.allowed_origins;
+    for (const std::string& origin : arguments.allowed_origins) {
+        const auto normalized = net::normalized_origin(origin);
+        if (!normalized)
+            throw std::runtime_error("--allow-origin: '" + origin +
+                                     "' is no origin: give scheme, host and, if need be, port alone, as "
+                                     "https://preview.example:8443");
+        options.access.allowed_origins.push_back(*normalized);
+    }
     return options;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -55,11 +56,41 @@ bool Access::accepts_host(std::string_view host) const {
 }
 
 bool Access::accepts_origin(std::string_view origin, std::string_view host) const {
-    if (std::find(allowed_origins.begin(), allowed_origins.end(), origin) != allowed_origins.end())
-        return true;
-    for (const std::string_view scheme : {"http://", "https://"})
-        if (!host.empty() && origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return true;
-    return false;
+    const auto asked = normalized_origin(origin);
+    if (!asked) return false;
+    if (std::ranges::find(allowed_origins, *asked) != allowed_origins.end()) return true;
+    return asked == normalized_origin("http://" + std::string(host)) ||
+           asked == normalized_origin("https://" + std::string(host));
+}
+
+std::optional<std::string> normalized_origin(std::string_view origin) {
+    std::string text(origin);
+    std::ranges::transform(text, text.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
+    const std::string_view scheme = text.starts_with("https://") ? "https://" : "http://";
+    if (!text.starts_with(scheme)) return std::nullopt;
+    const std::string_view rest = std::string_view(text).substr(scheme.size());
+    const bool is_v6 = rest.starts_with('[');
+    const std::size_t end = is_v6 ? rest.find(']') + 1 : std::min(rest.find(':'), rest.size());
+    const std::string_view host = rest.substr(0, end);
+    std::string_view port = rest.substr(end);
+    const auto all_of = [](std::string_view part, std::string_view others) {
+        return std::ranges::all_of(part, [&](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || others.find(c) != others.npos;
+        });
+    };
+    const bool is_host =
+        is_v6 ? host.size() > 2 && all_of(host, "[]:.") : !host.empty() && all_of(host, "-._");
+    if (!is_host) return std::nullopt;
+    if (port.empty()) return text;
+    port.remove_prefix(1);
+    int number = 0;
+    const auto [stop, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+    if (error != std::errc() || stop != port.data() + port.size() || number < 1 || number > 65'535 ||
+        port.starts_with('0'))
+        return std::nullopt;
+    const bool is_schemes_own = number == (scheme == "https://" ? 443 : 80);
+    return std::string(scheme) + std::string(host) + (is_schemes_own ? "" : ":" + std::string(port));
 }
 
 Access read_access(const std::filesystem::path& token_file) {

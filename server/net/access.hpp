@@ -13,7 +13,8 @@ namespace vrut::server::net {
 /// Who may come in. Empty tokens mean that none is asked for.
 struct Access {
     std::string control_token, view_token;
-    std::vector<std::string> allowed_origins;  ///< besides the server's own, "https://preview.example"
+    std::vector<std::string>
+        allowed_origins;  ///< besides the server's own, as normalized_origin() gives them
 
     bool needs_token() const { return !control_token.empty() || !view_token.empty(); }
     /// The role that a client gets who asks for `wanted` with this token; none where it may not come in. The
@@ -26,6 +27,10 @@ struct Access {
     /// allowed.
     bool accepts_origin(std::string_view origin, std::string_view host) const;
 };
+
+/// An origin of HTTP (RFC 6454: scheme://host[:port]) in small letters, without the scheme's own port. None
+/// where it is none.
+std::optional<std::string> normalized_origin(std::string_view origin);
 
 /// Tokens from a JSON file {"control": …, "view": …} that nobody else can read, or from the environment
 /// (VRUT_PREVIEW_CONTROL_TOKEN, VRUT_PREVIEW_VIEW_TOKEN). Throws std::runtime_error.

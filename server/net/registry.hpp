@@ -12,6 +12,7 @@
 #include "engine/output.hpp"
 #include "engine/room_engine.hpp"
 #include "net/access.hpp"
+#include "net/bodies_sent.hpp"
 #include "net/connection_limit.hpp"
 #include "net/deadlines.hpp"
 #include "net/document_updates.hpp"
@@ -73,8 +74,8 @@ struct ConnectionRegistry {
     std::function<std::optional<std::string>()> why_unready;
     /// For those who monitor it; empty: it has nothing to do with NATS, or shares its room with no server.
     std::function<bool()> nats_connected, room_owner;
-    std::size_t reports = 0;       ///< being made
-    std::size_t reports_sent = 0;  ///< being sent: they may be large
+    std::size_t reports = 0;  ///< being made
+    BodiesSent bodies_sent{std::size_t{128} << 20};
     std::set<Connection*> connections;
     std::int64_t next_client = 1;
     bool stopping = false;

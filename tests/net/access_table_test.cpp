@@ -74,7 +74,8 @@ const std::vector<std::string> kGuarded{
     "/report.html", "/report.csv"};
 
 int expected_status(const std::string& route, const TokenState& state, bool good_origin) {
-    if (!good_origin) return 403;
+    const bool is_page_file = route == "/" || route == "/app.js";
+    if (!good_origin && !is_page_file) return 403;
     if (route == "/ws") return 101;
     if (route == "/nothing" || route == "/metrics/") return 404;
     const bool guarded = std::find(kGuarded.begin(), kGuarded.end(), route) != kGuarded.end();
@@ -179,8 +180,9 @@ std::string see_routes(const Servers& servers) {
     return "## Routes\nTokens by `Authorization: Bearer`; what `/ws` asks for comes with `hello`. This holds "
            "where "
            "`Origin` is: " +
-           names_of(true) + ". Each of them is 403 where it is: " + names_of(false) + ".\n\n" + heads("GET") +
-           rows.text();
+           names_of(true) +
+           ". Each of them but `/` and the page's files is 403 where it is: " + names_of(false) + ".\n\n" +
+           heads("GET") + rows.text();
 }
 
 // --- messages

@@ -53,6 +53,47 @@ TEST_CASE("origins: its own, allowed ones; nothing that looks alike") {
         CHECK_FALSE_MESSAGE(access.accepts_origin(bad, host), bad);
 }
 
+TEST_CASE("origins are compared as they are meant: any letters, a port that the scheme has anyway") {
+    Access access;
+    access.allowed_origins = {*normalized_origin("HTTPS://Preview.Example:443")};
+    for (const char* good : {"https://preview.example", "https://PREVIEW.example:443", "http://desk",
+                             "http://DESK:80", "https://desk"})
+        CHECK_MESSAGE(access.accepts_origin(good, "Desk"), good);
+    CHECK(access.accepts_origin("http://[::1]:8080", "[::1]:8080"));
+    for (const char* bad :
+         {"https://preview.example:80", "http://preview.example", "http://desk:443", "http://desk:8080"})
+        CHECK_FALSE_MESSAGE(access.accepts_origin(bad, "Desk"), bad);
+}
+
+TEST_CASE("what is an origin, and what is none") {
+    CHECK(normalized_origin("https://preview.example:8443") == "https://preview.example:8443");
+    CHECK(normalized_origin("http://Desk:80") == "http://desk");
+    CHECK(normalized_origin("https://[FE80::1]:443") == "https://[fe80::1]");
+    CHECK(normalized_origin("http://10.0.0.7:443") == "http://10.0.0.7:443");
+    for (const char* none : {"",
+                             "*",
+                             "null",
+                             "preview.example",
+                             "https://",
+                             "https://:80",
+                             "https://preview.example/",
+                             "https://preview.example/page",
+                             "https://preview.example:",
+                             "https://preview.example:0",
+                             "https://a:65536",
+                             "https://a:080",
+                             "https://a:8o",
+                             "https://u@a",
+                             "https://a b",
+                             "ftp://a",
+                             "https://[",
+                             "https://[]",
+                             "https://[::1",
+                             "https://[::1]x",
+                             "https://a,https://b"})
+        CHECK_FALSE_MESSAGE(normalized_origin(none), none);
+}
+
 TEST_CASE("without a token the request must name the loopback interface") {
     Access access;
     for (const char* good :

@@ -73,6 +73,29 @@ TEST_CASE("pages of other origins may not connect") {
         CHECK_MESSAGE(TestClient(server.port(), {.origin = origin}).status() == 403, origin);
 }
 
+TEST_CASE("behind a proxy that says another Host the page comes, and is told why it may not connect") {
+    TestServer server;
+    const std::string host = "Host: 127.0.0.1:" + std::to_string(server.port()) + "\r\n";
+    const std::string foreign = host + "Origin: https://preview.example\r\n";
+    for (const char* file : {"/", "/app.js", "/style.css"})
+        CHECK_MESSAGE(http(server.port(), "GET", file, foreign).status == 200, file);
+    for (const char* other : {"/frame.jpg", "/metrics", "/ws", "/nothing"})
+        CHECK_MESSAGE(http(server.port(), "GET", other, foreign).status == 403, other);
+    // Of the same origin, a browser's request names none.
+    const auto why = [&](const std::string& origin) {
+        return http(server.port(), "GET", "/ws?origin=" + origin, host);
+    };
+    CHECK(why("https://preview.example").status == 403);
+    CHECK(why("https://preview.example").body ==
+          "pages of this origin may not connect: start the server with --allow-origin "
+          "https://preview.example\n");
+    CHECK(why("null").status == 403);
+    CHECK(why("<script>").body.find('<') == std::string::npos);
+    const HttpAnswer own = why("http://127.0.0.1:" + std::to_string(server.port()));
+    CHECK(own.status == 426);
+    CHECK(own.body.find("let the proxy pass their handshake on") != std::string::npos);
+}
+
 TEST_CASE("a client without a subprotocol is served without one, one with only others refused") {
     TestServer server;
     TestClient none(server.port(), {.subprotocol = ""});

@@ -49,6 +49,9 @@ export class Connection {
   #retries = 0;
   /** @type {ServerError|undefined} that came before the welcome */
   #refusal;
+  /** @type {{message: string}|undefined} why the last handshake was refused */
+  #why;
+  #opened = false;
   #timer;
 
   /**
@@ -81,7 +84,12 @@ export class Connection {
     const socket = new WebSocket(this.#url, SUBPROTOCOL);
     this.#socket = socket;
     socket.binaryType = 'arraybuffer';
-    socket.onopen = () => this.#post({ type: 'hello', ...this.#hello() });
+    this.#opened = false;
+    socket.onopen = () => {
+      this.#opened = true;
+      this.#why = undefined;
+      this.#post({ type: 'hello', ...this.#hello() });
+    };
     socket.onmessage = ({ data }) => {
       if (this.#phase === 'open') this.#listen();
       if (typeof data === 'string') this.#receive(parse(data));
@@ -166,7 +174,16 @@ export class Connection {
     // The pages of a room are not to come back all at once.
     const retryMs = longest * (0.5 + 0.5 * Math.random());
     this.#setTimer(retryMs, () => this.start());
-    this.#setPhase({ name: 'waiting', retryMs, hadOpened, reason: this.#refusal });
+    this.#setPhase({ name: 'waiting', retryMs, hadOpened, reason: this.#refusal ?? this.#why });
+    if (!this.#opened) this.#learnWhy({ name: 'waiting', retryMs, hadOpened });
+  }
+
+  /** Browsers hide from their pages why a handshake was refused: an ordinary request is told. @param {Phase} phase */
+  async #learnWhy(phase) {
+    const answer = await fetch(`${this.#url.replace('ws', 'http')}?origin=${location.origin}`).catch(() => undefined);
+    const message = answer && [403, 426].includes(answer.status) && (await answer.text()).trim();
+    this.#why = message ? { message } : undefined;
+    if (this.#phase === 'waiting') this.#setPhase({ ...phase, reason: this.#why });
   }
 
   #receive(message) {

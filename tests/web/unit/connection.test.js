@@ -13,7 +13,7 @@ afterEach(() => restore());
 
 /** A connection, all that it is surrounded by, and a log of what it tells. */
 function setUp({ role = 'control', token, resume, random = () => 1 } = {}) {
-  const page = { sockets: [], phases: [], sent: [], frames: [], states: [], errors: [], messages: [], clock: new FakeClock() };
+  const page = { sockets: [], phases: [], sent: [], frames: [], states: [], errors: [], messages: [], asked: [], clock: new FakeClock() };
   page.connection = new Connection({
     url: 'ws://server/ws',
     hello: () => ({ role, token, resume }),
@@ -33,6 +33,13 @@ function setUp({ role = 'control', token, resume, random = () => 1 } = {}) {
         page.sockets.push(this);
       }
     },
+    fetch: async (address) => {
+      const { answer } = page;
+      page.asked.push(address);
+      if (!answer) throw new TypeError();
+      return { ...answer, text: async () => answer.text };
+    },
+    location: { origin: 'https://desk.example' },
     setTimeout: page.clock.setTimeout,
     clearTimeout: page.clock.clearTimeout,
     Math: Object.create(Math, { random: { value: random } }),
@@ -420,6 +427,53 @@ describe('a refusal', () => {
     assert.equal(page.phase.name, 'waiting');
     assert.equal(page.phase.reason.message, 'The server has no room.');
     assert.equal(page.clock.next, 250);
+  });
+});
+
+describe('a handshake that is refused', () => {
+  test('is told about by an ordinary request, as long as it is', async () => {
+    const page = setUp();
+    page.answer = { status: 403, text: 'pages of this origin may not connect: start the server with it\n' };
+    page.connection.start();
+    page.socket.ends(1006);
+    assert.equal(page.phase.reason, undefined);
+    await settle();
+    assert.deepEqual(page.asked, ['http://server/ws?origin=https://desk.example']);
+    const told = { message: 'pages of this origin may not connect: start the server with it' };
+    assert.deepEqual(page.phase.reason, told);
+    page.clock.advance(250);
+    page.socket.ends(1006);
+    assert.deepEqual(page.phase.reason, told);
+    await settle();
+    page.answer = undefined; // the server is gone
+    page.clock.advance(500);
+    page.socket.ends(1006);
+    await settle();
+    assert.equal(page.phase.reason, undefined);
+  });
+
+  test('by a server that answers otherwise, or after an opened socket, is told nothing about', async () => {
+    const page = setUp();
+    page.answer = { status: 502, text: '<html>Bad gateway</html>' };
+    page.connection.start();
+    page.socket.ends(1006);
+    await settle();
+    assert.equal(page.phase.reason, undefined);
+    page.clock.advance(250);
+    page.socket.opens();
+    page.socket.ends(1006);
+    await settle();
+    assert.equal(page.asked.length, 1);
+  });
+
+  test('in the meantime a new try is not told about the last one', async () => {
+    const page = setUp();
+    page.answer = { status: 426, text: 'WebSockets do not get through' };
+    page.connection.start();
+    page.socket.ends(1006);
+    page.connection.wake();
+    await settle();
+    assert.equal(page.phase.name, 'connecting');
   });
 });
 
