@@ -9,6 +9,14 @@
 
 namespace vrut::server::room {
 
+scene::Index hinged(const scene::Scene& scene, scene::Index node) {
+    const auto at = [&](scene::Index index) -> const scene::Node& {
+        return scene.nodes()[static_cast<std::size_t>(index)];
+    };
+    while (node != scene::kNone && !at(node).hinge) node = at(node).parent;
+    return node;
+}
+
 glm::dmat4 opened(const scene::Node& node, double part) {
     const double radians = part * node.hinge->degrees * scene::kRadiansPerDegree;
     return node.matrix * glm::rotate(glm::dmat4(1), radians, scene::unit_axis(*node.hinge));

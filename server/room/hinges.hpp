@@ -6,6 +6,9 @@
 
 namespace vrut::server::room {
 
+/// The node or the innermost above it that has a hinge; kNone where none has.
+scene::Index hinged(const scene::Scene& scene, scene::Index node);
+
 /// A node's matrix with its hinge opened by a part. The node must have a hinge, as below.
 glm::dmat4 opened(const scene::Node& node, double part);
 

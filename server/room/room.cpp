@@ -21,7 +21,7 @@ Room::Room(scenes::LoadedScene scene, RoomOptions options)
       state_(starting_),
       at_home_(!state_.camera.node) {
     lay_changes();
-    document_ = protocol::StateDocument::next({}, state_);
+    revisions_.go_to(1, state_, true);
     visible_ = view_of(state_, scene_);
 }
 
@@ -29,12 +29,13 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
                 const std::string& resume_key) {
     advance(at);
     document();
-    changing_.clear();  // who holds control is the server's doing
-    add_client(client, {role, {}, own_name(name, resume_key), resume_key});
-    list_clients();
+    revisions_.begin({});  // who holds control is the server's doing
+    const std::string shown = options_.replaying ? name : clients_.free_name(name, resume_key);
+    clients_.add(client, {role, {}, shown, resume_key});
+    state_.clients.set(clients_.listed());
     use_walls();
-    write_recording(client, protocol::LogLine::Connected{role, clients_[client].name});
-    write_journal(client, protocol::LogLine::Connected{role, clients_[client].name, resume_key});
+    write_recording(client, protocol::LogLine::Connected{role, shown});
+    write_journal(client, protocol::LogLine::Connected{role, shown, resume_key});
     if (!may(role, Right::hold_control)) return;
     if (options_.replaying) return;
     steering_.join(client, resume_key);
@@ -42,70 +43,27 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     record_holder();
 }
 
-void Room::add_client(const std::string& client, const Client& added) {
-    clients_[client] = added;
-    clients_[client].arrival = ++arrivals_;
-}
-
-void Room::list_clients() {
-    using Entry = decltype(clients_)::const_pointer;
-    std::vector<Entry> listed;
-    for (const auto& entry : clients_)
-        if (may(entry.second.role, Right::present) || !entry.second.name.empty()) listed.push_back(&entry);
-    std::ranges::sort(listed, {}, [](Entry entry) {
-        return std::pair(!may(entry->second.role, Right::present), entry->second.arrival);
-    });
-    listed.resize(std::min(listed.size(), protocol::kMaxListedClients));
-    std::map<std::string, protocol::ClientState> clients;
-    for (const Entry entry : listed) clients[entry->first] = {shown_name(entry->first), entry->second.role};
-    state_.clients.set(std::move(clients));
-}
-
-std::string Room::own_name(const std::string& name, const std::string& resume_key) const {
-    const auto is_taken = [&](const std::string& candidate) {
-        return std::any_of(clients_.begin(), clients_.end(), [&](const auto& entry) {
-            const Client& other = entry.second;
-            // Its own connection of before may not have ended yet.
-            const bool is_same = !resume_key.empty() && other.resume_key == resume_key;
-            return other.name == candidate && !is_same;
-        });
-    };
-    if (name.empty() || options_.replaying || !is_taken(name)) return name;
-    for (int number = 2;; ++number) {
-        const std::string suffix = " " + std::to_string(number);
-        std::size_t size = std::min(name.size(), protocol::kMaxClientName - suffix.size());
-        while (size > 0 && size < name.size() && (name[size] & 0xC0) == 0x80) --size;  // within a character
-        std::string candidate = name.substr(0, size) + suffix;
-        if (!is_taken(candidate)) return candidate;
-    }
-}
-
 const std::string& Room::client_name(const std::string& client) const {
     static const std::string none;
-    const auto found = clients_.find(client);
-    return found == clients_.end() ? none : found->second.name;
-}
-
-std::optional<std::string> Room::shown_name(const std::string& client) const {
-    const std::string& name = client_name(client);
-    return name.empty() ? std::nullopt : std::optional(name);
+    const Client* const found = clients_.find(client);
+    return found ? found->name : none;
 }
 
 void Room::leave(const std::string& client, SessionTime at) {
     advance(at);
     document();  // what was before is others' doing, or the client's own
-    changing_.clear();
+    revisions_.begin({});
     record(client, protocol::LogLine::Disconnected{});
     gestures_.lift(client, camera());
     clicks_.lift(client);
-    stop_pointing(client);
+    pointings_.stop(client);
     if (steering_.holds(client)) {
         end_flight(false);
         recorded_holder_ = {client, true};  // by that line
     }
     steering_.leave(client, time_, options_.replaying);
     clients_.erase(client);
-    list_clients();
+    state_.clients.set(clients_.listed());
     show_holder();
     record_holder();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
@@ -151,8 +109,8 @@ void Room::update_visible() {
 template <class Apply>
 bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     advance(at);
-    if (changing_ != received.client) document();  // a revision is one client's doing
-    changing_ = received.client;
+    if (revisions_.changing() != received.client) document();  // a revision is one client's doing
+    revisions_.begin(received.client);
     accepted_ = false;
     const bool recorded = active_recording() != nullptr;
     apply();
@@ -198,9 +156,26 @@ void Room::scenes_listed(std::int64_t request, std::vector<std::string> names) {
         answer_with({asked->client, asked->message}, protocol::SceneList{0, std::move(names)});
 }
 
+void Room::use_walls() {
+    const bool is_limited = state_.comfort.on && clients_.any_may(Right::drive_walls);
+    walls_.use(is_limited, moves() || swings_.is_tapped(), camera(), time_);
+}
+
+void Room::step_walls() {
+    if (!revisions_.changing().empty()) document();
+    revisions_.begin({});  // how it follows is nobody's doing
+    walls_.step(camera(), state_.comfort, state_.unit.metres);
+    use_walls();
+}
+
+void Room::measure() {
+    if (auto measured = measures_.changed(state_.measures, scene_)) state_.measured.set(*std::move(measured));
+}
+
 void Room::advance(SessionTime at) {
-    while (walls_ && walls_->due && *walls_->due <= at) {
-        advance_to(*walls_->due);
+    while (const auto due = walls_.due()) {
+        if (*due > at) break;
+        advance_to(*due);
         step_walls();
     }
     advance_to(at);
@@ -211,20 +186,17 @@ void Room::advance_to(SessionTime at) {
     time_ = std::max(time_, at);
     if (const auto due = steering_.deadline(); due && !options_.replaying && *due <= time_) {
         document();
-        changing_.clear();
+        revisions_.begin({});
         steering_.advance(time_);
         show_holder();
         record_holder();
     }
-    if (tap_ && tap_->due <= time_) {
-        const Tap tap = *std::exchange(tap_, std::nullopt);
-        begin_swing(tap.node, {}, protocol::Swing{}.ms, tap.due);
-    }
+    swings_.use_tap(*scene_, time_);
     send_pointings();
     advance_swings();
     if (!flight_) return;
-    if (!changing_.empty()) document();
-    changing_.clear();  // what flies is nobody's doing
+    if (!revisions_.changing().empty()) document();
+    revisions_.begin({});  // what flies is nobody's doing
     const double ms = static_cast<double>((time_ - flight_->start).count()) / 1000;
     state_.camera = state_of(flight_->path.at(ms), scene_->bounds);
     at_home_ = false;
@@ -241,22 +213,23 @@ void Room::advance_to(SessionTime at) {
 void Room::show(scenes::LoadedScene scene, SessionTime at) {
     advance(at);
     document();
-    changing_.clear();
+    revisions_.begin({});
     end_flight(false);
     swings_.clear();
-    tap_.reset();
-    stop_all_pointings();
+    swings_.forget_tap();
+    pointings_.stop_all();
     record({}, protocol::LogLine::Opened{scene.name, scene.sha256, scene.changes, scene.up_axis});
     loaded_ = std::move(scene);
     scene_ = loaded_.placed;
-    mesh_edges_ = {};
+    measures_.forget_edges();
     starting_ = starting_state(loaded_, aspect(), cover());
     state_ = protocol::opened(starting_, state_);
     at_home_ = !state_.camera.node;
     lay_changes();
     gestures_.restart(camera());
     update_visible();
-    jump_walls();
+    walls_.jump();
+    use_walls();
 }
 
 void Room::lay_changes() {
@@ -275,7 +248,7 @@ std::string Room::changes() const { return protocol::kept_changes(starting_, sta
 
 void Room::notice(const protocol::Notice& notice) {
     document();
-    changing_.clear();  // the server's doing
+    revisions_.begin({});  // the server's doing
     add_notice(notice);
 }
 
@@ -286,24 +259,17 @@ void Room::add_notice(const protocol::Notice& notice) {
 }
 
 void Room::remember(std::int64_t frame) {
-    frames_.push_back({frame, visible_.camera, view_size_});
-    if (frames_.size() > kFramesRemembered) frames_.pop_front();
+    frames_.add({frame, visible_.camera, view_size_});
     record({}, protocol::LogLine::Drawn{frame});
 }
 
 const std::shared_ptr<const protocol::StateDocument>& Room::document() {
-    state_.walls = walls_state();
-    if (!document_->shows(state_)) {
-        document_ = protocol::StateDocument::next(*document_, state_);
-        if (changed_by_ != changing_ || changed_by_since_ == 0) changed_by_since_ = document_->revision();
-        changed_by_ = changing_;
-    }
-    return document_;
+    state_.walls = walls_.state(camera(), scene_->bounds, state_.unit.metres);
+    return revisions_.of(state_);
 }
 
 std::vector<std::pair<std::string, Role>> Room::clients() const {
     std::vector<std::pair<std::string, Role>> here;
-    here.reserve(clients_.size());
     for (const auto& [name, client] : clients_) here.emplace_back(name, client.role);
     return here;
 }
@@ -314,7 +280,7 @@ void Room::apply(const Received&, const protocol::Hello&) {}       // the sessio
 void Room::apply(const Received&, const protocol::FrameGrant&) {}  // the engine's
 
 void Room::apply(const Received& received, const protocol::Resize& resize) {
-    clients_[received.client].wanted = resize;
+    clients_.at(received.client).wanted = resize;
     if (steering_.holder() == received.client) use_holders_size();
     answer(received);
 }
@@ -395,7 +361,7 @@ void Room::reject(const std::string& client, const protocol::Error& error) {
 // --- who steers
 
 bool Room::may_send(const Received& received, Right right) {
-    Client& client = clients_[received.client];
+    Client& client = clients_.at(received.client);
     if (may(client.role, right)) return true;
     if (!received.is_input() || !std::exchange(client.knows_not_allowed, true))
         reject(received, code::not_allowed,
@@ -404,7 +370,7 @@ bool Room::may_send(const Received& received, Right right) {
 }
 
 bool Room::may_steer(const Received& received) {
-    const bool is_free = may(clients_[received.client].role, Right::drive_walls)
+    const bool is_free = may(clients_.at(received.client).role, Right::drive_walls)
                              ? steering_.is_quiet(time_) && !gestures_.any_pressed()
                              : steering_.holds(received.client);
     if (is_free || !options_.judges()) return true;
@@ -414,7 +380,7 @@ bool Room::may_steer(const Received& received) {
 
 void Room::reject_not_in_control(const Received& received) {
     const protocol::ControlState& control = state_.control;
-    const std::string remedy = may(clients_[received.client].role, Right::drive_walls)
+    const std::string remedy = may(clients_.at(received.client).role, Right::drive_walls)
                                    ? "try again when that client has not steered for 1 s"
                                    : "'control' with the action 'ask' asks for it";
     reject(received, code::not_in_control,
@@ -427,7 +393,7 @@ void Room::steer(const Received& received) {
     const bool is_beside_flights =
         std::holds_alternative<protocol::Record>(payload) || std::holds_alternative<protocol::Swing>(payload);
     if (!is_beside_flights) end_flight(false);
-    if (may(clients_[received.client].role, Right::drive_walls)) return;
+    if (may(clients_.at(received.client).role, Right::drive_walls)) return;
     steering_.steer(time_);
     if (!options_.replaying) return;
     if (std::holds_alternative<protocol::Pointer>(payload) && !steering_.holds(received.client))
@@ -443,9 +409,9 @@ void Room::show_holder() {
             gestures_.lift(*control.holder, camera());
             clicks_.lift(*control.holder);
         }
-        tap_.reset();
+        swings_.forget_tap();
         control.holder = steering_.holder();
-        control.name = control.holder ? shown_name(*control.holder) : std::nullopt;
+        control.name = control.holder ? clients_.shown_name(*control.holder) : std::nullopt;
         if (!size_waits_) use_holders_size();
         update_visible();
     }
@@ -453,7 +419,7 @@ void Room::show_holder() {
     control.absent = steering_.is_absent();
     control.asking.clear();
     for (const std::string& client : steering_.asking())
-        control.asking.push_back({client, shown_name(client)});
+        control.asking.push_back({client, clients_.shown_name(client)});
 }
 
 void Room::record_holder() {
@@ -464,9 +430,9 @@ void Room::record_holder() {
 
 void Room::use_holders_size() {
     size_waits_ = false;
-    const auto holder = state_.control.holder ? clients_.find(*state_.control.holder) : clients_.end();
-    if (holder == clients_.end() || !holder->second.wanted || *holder->second.wanted == view_size_) return;
-    const protocol::Resize before = std::exchange(view_size_, *holder->second.wanted);
+    const Client* const holder = state_.control.holder ? clients_.find(*state_.control.holder) : nullptr;
+    if (!holder || !holder->wanted || *holder->wanted == view_size_) return;
+    const protocol::Resize before = std::exchange(view_size_, *holder->wanted);
     protocol::Resize same_size = before;
     same_size.inset = view_size_.inset;
     // What opens above the picture later does not move it.
@@ -497,9 +463,9 @@ navigation::NavigationContext Room::navigation_context(const std::optional<glm::
     context.turn_about_touched = navigation.turn_about == protocol::NavigationState::TurnAbout::touched;
     context.surface_at = [this, touched](const scene::Camera& camera, const glm::dvec2& place) {
         if (touched) return touched;
-        Frame seen = present();
+        SeenFrame seen = present();
         seen.camera = camera;
-        const std::optional<mesh::Hit> hit = hit_at(seen, place.x, place.y, false);
+        const std::optional<mesh::Hit> hit = hit_along(seen.ray_at(place.x, place.y), false);
         return hit ? std::optional(hit->point) : std::nullopt;
     };
     context.looks_around_from = [this](const glm::dvec3& eye) {

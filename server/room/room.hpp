@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,29 +10,29 @@
 #include "cue_list.hpp"
 #include "event_log.hpp"
 #include "frame_header.hpp"
-#include "measurement/mesh_edges.hpp"
 #include "mesh/picking.hpp"
 #include "mesh/watertight_memo.hpp"
 #include "message_table.hpp"
 #include "navigation/clicks.hpp"
-#include "navigation/comfort_limiter.hpp"
 #include "navigation/flight.hpp"
 #include "navigation/gestures.hpp"
 #include "plan/view.hpp"
 #include "room/answers.hpp"
+#include "room/clients.hpp"
+#include "room/measures.hpp"
+#include "room/pointings.hpp"
 #include "room/recording.hpp"
+#include "room/revisions.hpp"
 #include "room/scene_state.hpp"
+#include "room/seen_frames.hpp"
 #include "room/steering.hpp"
+#include "room/swings.hpp"
+#include "room/walls_camera.hpp"
 #include "scenes/loaded_scene.hpp"
 #include "state.hpp"
 #include "state_document.hpp"
 
 namespace vrut::server::room {
-
-/// Picks may name one of so many frames.
-inline constexpr std::size_t kFramesRemembered = 64;
-/// What a client points at is sent at most 30 times a second.
-inline constexpr SessionTime kPointsApart{33'334};
 
 struct RoomOptions {
     std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
@@ -129,15 +128,15 @@ public:
     /// `changed_by`.
     const std::shared_ptr<const protocol::StateDocument>& document();
     /// Who made the newest revision and those before it, down to `changed_by_since()`; empty: the server.
-    const std::string& changed_by() const { return changed_by_; }
-    std::int64_t changed_by_since() const { return changed_by_since_; }
+    const std::string& changed_by() const { return revisions_.changed_by(); }
+    std::int64_t changed_by_since() const { return revisions_.changed_by_since(); }
 
     /// Answers what a client said that cannot be read.
     void reject(const std::string& client, const protocol::Error& error);
     std::vector<Answer> take_answers() { return std::exchange(answers_, {}); }
     std::vector<PictureOrder> take_orders() { return std::exchange(orders_, {}); }
     /// What is to be sent to all clients: the newest of each that points, or has pointed.
-    std::vector<protocol::Pointed> take_pointed();
+    std::vector<protocol::Pointed> take_pointed() { return pointings_.take(); }
     /// What of a list of cues does not go with the scene: `list` is as in its file.
     protocol::Checked check_cues(const nlohmann::json& list) const;
     /// The same of the file's text.
@@ -148,15 +147,6 @@ public:
                                                       const protocol::OtherView& other = {});
 
 private:
-    struct Client {
-        protocol::Role role = protocol::Role::view;
-        std::optional<protocol::Resize> wanted;
-        std::string name = {};           ///< as others see it
-        std::string resume_key = {};     ///< as it gave it; empty: none
-        std::uint64_t arrival = 0;       ///< rises
-        bool knows_not_allowed = false;  ///< of input without an id
-        bool knows_no_pointing = false;  ///< likewise of pointing, while that is not allowed
-    };
     /// The message in hand.
     struct Received {
         const std::string& client;
@@ -172,20 +162,6 @@ private:
         SessionTime start{0};
         protocol::CameraState from;
         protocol::Fly asked;
-    };
-
-    /// A node that turns about its hinge.
-    struct InSwing {
-        scene::Index node = scene::kNone;
-        double from = 0, to = 1;  ///< parts of the hinge's degrees
-        SessionTime start{0};
-        double ms = 0;
-        double part_at(SessionTime time) const;
-    };
-    /// It may still become a double one.
-    struct Tap {
-        scene::Index node = scene::kNone;  ///< with a hinge
-        SessionTime due{0};
     };
 
     void apply(const Received& received, const protocol::Hello& hello);
@@ -242,15 +218,6 @@ private:
     void answer_with(const Received& received, const Message& message);
     void reject(const Received& received, const char* code, const std::string& sentence);
 
-    /// `name`, with the first free number behind it where another client has that name.
-    std::string own_name(const std::string& name, const std::string& resume_key) const;
-
-    /// The same for the state: none where it has none.
-    std::optional<std::string> shown_name(const std::string& client) const;
-    void add_client(const std::string& client, const Client& added);
-    /// Brings the state in line with who is here: control clients and hosts first, then viewers with a name.
-    void list_clients();
-
     // --- who steers
     /// Returns true if its client's role is one of these; else it is rejected.
     bool may_send(const Received& received, protocol::Right right);
@@ -268,23 +235,12 @@ private:
     void use_holders_size();
 
     // --- pointing at things
-    /// What the view showed, or shows.
-    struct Frame {
-        std::int64_t number = 0;
-        scene::Camera camera;
-        protocol::Resize view_size;
-    };
-    Frame present() const { return {0, camera(), view_size_}; }
-    /// Null where it is not remembered.
-    const Frame* find_frame(std::int64_t number) const;
+    SeenFrame present() const { return {0, camera(), view_size_}; }
     /// The one that a message names, or the present view; none where it is not remembered: the message is
     /// rejected.
-    std::optional<Frame> frame_named(const Received& received, const std::optional<std::int64_t>& number);
-    /// What of the present scene lies under a point of a frame's view, in CSS pixels.
-    std::optional<mesh::Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
+    std::optional<SeenFrame> frame_named(const Received& received, const std::optional<std::int64_t>& number);
+    /// What of the present scene lies along a ray.
     std::optional<mesh::Hit> hit_along(const mesh::Ray& ray, bool through) const;
-    /// Through that point of the frame's view, from its eye.
-    mesh::Ray ray_at(const Frame& seen, double x, double y) const;
     void apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit);
     void select(scene::Index node);
     /// kNone where nothing is.
@@ -297,61 +253,25 @@ private:
     Path path_of(scene::Index node) const;
 
     // --- pointing others to things
-    struct Pointing {
-        std::optional<mesh::Ray> ray = {};  ///< along which it points; none: at nothing
-        bool waits = false;                 ///< others do not know it yet
-        bool is_shown = false;              ///< they know a point
-        std::optional<SessionTime> last_sent = {};
-        /// When the next may be sent.
-        SessionTime due() const { return last_sent ? *last_sent + kPointsApart : SessionTime{0}; }
-    };
     bool may_point(const std::string& client) const;
-    /// Looks at what is hit, where it is time for that.
     void send_pointings();
-    void stop_pointing(const std::string& client);
-    void stop_all_pointings();
     /// Who may point has changed.
     void use_pointing();
-    std::optional<SessionTime> pointing_deadline() const;
 
     // --- the camera of hosts, which follows the room's at the speeds of `comfort`
-    struct Walls {
-        navigation::ComfortLimiter limiter;
-        std::optional<SessionTime> due = {};  ///< of the next step; none: it rests where nothing moves
-    };
     /// Begins or ends what follows, in line with who is here, and with what moves.
     void use_walls();
     void restore_clients(const std::vector<protocol::LogHeader::Client>& clients);
-    std::optional<protocol::LogHeader::Walls> logged_walls() const;
-    /// Or what is wrong with them.
-    std::optional<protocol::Error> restore_walls(const protocol::LogHeader::Walls& walls);
     /// Its next step, at time_.
     void step_walls();
-    /// Hosts have the present camera at once.
-    void jump_walls();
-    /// For the state; none: hosts have the present camera.
-    std::optional<protocol::WallsState> walls_state() const;
 
     // --- measures
-    /// What a pick with `snap` finds; none where nothing is near.
-    std::optional<protocol::Snapped> snapped_at(const Frame& seen, const protocol::Pick& pick) const;
-    /// What is wrong with measures that a patch has changed.
-    std::optional<protocol::Error> check_measures(const protocol::State& next) const;
     /// Brings what is measured in line with the measures and the scene.
     void measure();
 
     // --- hinges
-    /// The node or the innermost above it that has a hinge; kNone where none has.
-    scene::Index hinged(scene::Index node) const;
-    /// `open`: how far, from 0 to 1; none: closed, or else open.
-    void begin_swing(scene::Index node, std::optional<double> open, double ms, SessionTime start);
     void advance_swings();
-    std::map<std::string, protocol::SwingState> swing_states() const;
-    /// At once.
     void end_swings();
-    /// Of nodes to which a patch gives another matrix.
-    void end_swings_of(protocol::State& next);
-    void use_tap(const std::optional<mesh::Hit>& hit, SessionTime at);
 
     // --- patches
     /// Lays what is kept of the scene over what its file says. Where it cannot be used, nothing of it counts,
@@ -417,28 +337,23 @@ private:
     std::shared_ptr<const scene::PlacedScene> scene_;  ///< with its nodes as they stand now
     protocol::Resize view_size_;
     protocol::State starting_, state_;
-    std::shared_ptr<const protocol::StateDocument> document_;
-    std::string changed_by_, changing_;
-    std::int64_t changed_by_since_ = 0;
+    Revisions revisions_;
     std::vector<Answer> answers_;
     std::vector<PictureOrder> orders_;
     /// As cues have it that pictures are drawn of; gone with the pictures.
     std::vector<
         std::pair<protocol::SharedMap<protocol::NodeOverride>, std::weak_ptr<const scene::PlacedScene>>>
         laid_scenes_;
-    std::map<std::string, protocol::Pointed> pointed_;  ///< to be sent, by client
-    std::map<std::string, Pointing> pointings_;         ///< by client
-    std::map<std::string, Client> clients_;
-    std::uint64_t arrivals_ = 0;
+    Pointings pointings_;
+    Clients clients_;
     Steering steering_;
     navigation::Gestures gestures_;
     navigation::Clicks clicks_;
     std::optional<InFlight> flight_;
-    std::vector<InSwing> swings_;
-    std::optional<Tap> tap_;
-    std::optional<Walls> walls_;  ///< none: hosts have the room's camera
-    SessionTime time_{0};         ///< of what happens now
-    bool accepted_ = false;       ///< the message in hand
+    Swings swings_;
+    WallsCamera walls_;
+    SessionTime time_{0};    ///< of what happens now
+    bool accepted_ = false;  ///< the message in hand
     /// Who holds control by the lines of a log up to here, and whether that client is absent.
     std::pair<std::optional<std::string>, bool> recorded_holder_;
     /// In a replay: for the press that took control to end. It is measured in the view that it began in.
@@ -447,10 +362,8 @@ private:
     plan::View visible_;
     protocol::SharedMap<protocol::Marker> shown_markers_;  ///< whose marks are in visible_
     mutable mesh::WatertightMemo watertight_;
-    mutable measurement::MeshEdgesMemo mesh_edges_;
-    protocol::SharedMap<protocol::MeasureState> measured_of_;  ///< what the state's `measured` was made of
-    std::shared_ptr<const scene::PlacedScene> measured_in_;
-    std::deque<Frame> frames_;  ///< the last kFramesRemembered
+    Measures measures_;
+    SeenFrames frames_;
     std::int64_t newest_request_ = 0, newest_recording_ = 0;
     std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk
     std::map<std::int64_t, Recording> recordings_;    ///< until all of them is written

@@ -95,11 +95,11 @@ void Room::swing_to_cue(const CueState& cue, protocol::State& next) {
         const std::optional<double> part = hinge_part(node, to);
         if (!part || from == to || !hinge_part(node, from)) continue;
         nodes[id].matrix = from;
-        begin_swing(index, *part, 0, time_);
-        swings_.back().ms = cue.ms;
+        const glm::dmat4& stands = scene_->nodes[static_cast<std::size_t>(index)].matrix;
+        swings_.begin_at(index, opened_part(node, stands), *part, cue.ms, time_);
     }
     next.nodes.set(std::move(nodes));
-    next.swings.set(swing_states());
+    next.swings.set(swings_.states(*scene_->scene));
 }
 
 std::optional<Error> Room::use_cues(protocol::State& next) const {

@@ -4,6 +4,7 @@
 
 #include "codec.hpp"
 #include "navigation/keys.hpp"
+#include "room/hinges.hpp"
 #include "room/named_part.hpp"
 #include "room/room.hpp"
 
@@ -41,7 +42,7 @@ void Room::apply(const Received& received, const protocol::Pointer& pointer) {
                        clicks_.is_pressed(received.client, pointer.pointer_id);
     if (!known || !may_steer(received)) return;
     steer(received);
-    if (press) tap_.reset();
+    if (press) swings_.forget_tap();
     const navigation::PointerInput input = input_of(received.client, pointer);
     const navigation::NavigationContext context = navigation_context(pointer.touched);
     drag_camera(gestures_.pointer(input, camera(), context));
@@ -49,12 +50,14 @@ void Room::apply(const Received& received, const protocol::Pointer& pointer) {
     const bool taps = state_.navigation.tap_swings && pointer.event == protocol::Pointer::Event::up;
     const auto tap = taps ? clicks_.tap() : std::nullopt;
     if (!click && !tap) return;
-    const Frame* seen = pointer.frame ? find_frame(*pointer.frame) : nullptr;
-    if (!seen && !frames_.empty()) seen = &frames_.back();  // not told, or long forgotten
+    const SeenFrame* seen = pointer.frame ? frames_.find(*pointer.frame) : nullptr;
+    if (!seen) seen = frames_.newest();  // not told, or long forgotten
     const glm::dvec2 place = click ? glm::dvec2(click->x, click->y) : *tap;
-    const std::optional<mesh::Hit> hit = hit_at(seen ? *seen : present(), place.x, place.y, false);
+    const std::optional<mesh::Hit> hit =
+        hit_along((seen ? *seen : present()).ray_at(place.x, place.y), false);
     if (click) return apply(click->operation, hit);
-    use_tap(hit, time_);
+    const scene::Index turns = hit ? hinged(*scene_->scene, hit->node) : scene::kNone;
+    if (turns != scene::kNone) swings_.tap(turns, time_ + navigation::Clicks::kNextWithin);
 }
 
 void Room::apply(const Received& received, const protocol::Wheel& wheel) {
@@ -101,7 +104,7 @@ void Room::apply(const Received& received, const protocol::Pick& pick) {
     if (pick.then && !(may_send(received, protocol::Right::hold_control) && may_steer(received))) return;
     const auto seen = frame_named(received, pick.frame);
     if (!seen) return;
-    const std::optional<mesh::Hit> hit = hit_at(*seen, pick.x, pick.y, pick.through);
+    const std::optional<mesh::Hit> hit = hit_along(seen->ray_at(pick.x, pick.y), pick.through);
     if (pick.then) {
         steer(received);
         if (*pick.then == Then::select)
@@ -122,34 +125,21 @@ void Room::apply(const Received& received, const protocol::Pick& pick) {
             if (std::isfinite(local.x + local.y + local.z)) picked.local = local;
         }
     }
-    if (pick.snap) picked.snapped = snapped_at(*seen, pick);
+    if (pick.snap)
+        picked.snapped = measures_.snapped(
+            *scene_, *seen, pick, [&](const mesh::Ray& ray) { return hit_along(ray, pick.through); },
+            visible_.clip_planes);
     answer_with(received, picked);
 }
 
-const Room::Frame* Room::find_frame(std::int64_t number) const {
-    const auto found = std::find_if(frames_.begin(), frames_.end(),
-                                    [&](const Frame& frame) { return frame.number == number; });
-    return found == frames_.end() ? nullptr : &*found;
-}
-
-std::optional<Room::Frame> Room::frame_named(const Received& received,
-                                             const std::optional<std::int64_t>& number) {
+std::optional<SeenFrame> Room::frame_named(const Received& received,
+                                           const std::optional<std::int64_t>& number) {
     if (!number) return present();
-    if (const Frame* named = find_frame(*number)) return *named;
+    if (const SeenFrame* named = frames_.find(*number)) return *named;
     reject(received, code::unknown_frame,
            "frame " + std::to_string(*number) + " is not among the last " +
-               std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
+               std::to_string(SeenFrames::kMost) + " of the view; snapshots are not remembered");
     return std::nullopt;
-}
-
-mesh::Ray Room::ray_at(const Frame& seen, double x, double y) const {
-    const protocol::Resize& size = seen.view_size;
-    const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
-    return {seen.camera.eye, scene::direction_through(seen.camera, size.width / size.height, point)};
-}
-
-std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, bool through) const {
-    return hit_along(ray_at(seen, x, y), through);
 }
 
 std::optional<mesh::Hit> Room::hit_along(const mesh::Ray& ray, bool through) const {
@@ -187,7 +177,7 @@ void Room::select(scene::Index node) {
     const scene::Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
     const auto [names, ids] = path_of(node);
     state_.selection = {selected.id, selected.name, names, ids, {}};
-    if (const scene::Index turns = hinged(node); turns != scene::kNone)
+    if (const scene::Index turns = hinged(*scene_->scene, node); turns != scene::kNone)
         state_.selection.hinge = scene_->scene->nodes()[static_cast<std::size_t>(turns)].id;
 }
 

@@ -22,7 +22,7 @@ std::string listed(protocol::Sections sections) {
 }  // namespace
 
 void Room::apply(const Received& received, const protocol::Patch& patch) {
-    const bool drives_walls = may(clients_[received.client].role, protocol::Right::drive_walls);
+    const bool drives_walls = may(clients_.at(received.client).role, protocol::Right::drive_walls);
     if (drives_walls && !protocol::names_only(*patch.patch, protocol::Sections::for_hosts))
         return reject(received, code::not_allowed,
                       "a host may patch nothing but " + listed(protocol::Sections::for_hosts));
@@ -48,15 +48,19 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
     next->control = state_.control;
-    protocol::sign_notes(state_, *patch.patch, shown_name(received.client), *next);
+    protocol::sign_notes(state_, *patch.patch, clients_.shown_name(received.client), *next);
     keep_shown_cue(*next);
-    end_swings_of(*next);
+    swings_.end_changed(*scene_->scene, *state_.nodes, *next->nodes);
+    next->swings.set(swings_.states(*scene_->scene));
     state_ = *std::move(next);
     scene_ = std::move(placed);
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     gestures_.restart(camera());
     measure();
-    if (drives_walls && named.any()) jump_walls();
+    if (drives_walls && named.any()) {
+        walls_.jump();
+        use_walls();
+    }
     if (pointing_changes) use_pointing();
     answer(received);
 }
@@ -133,7 +137,8 @@ std::optional<Error> Room::use_entries(protocol::State& next, const scene::Place
     if (auto error = use_views(next, placed)) return error;
     if (auto error = use_notes(next, placed)) return error;
     if (auto error = check_names(next)) return error;
-    if (auto error = check_measures(next)) return error;
+    if (next.measures != state_.measures)
+        if (auto error = Measures::problem_of(next.measures, *scene_->scene)) return error;
     return use_cues(next);
 }
 

@@ -17,7 +17,7 @@ void Room::apply(const Received& received, const protocol::Record& record) {
     if (!options_.judges()) {
         steer(received);
         end_swings();
-        tap_.reset();
+        swings_.forget_tap();
         return answer(received);
     }
     if (!options_.recordings)
@@ -38,7 +38,7 @@ void Room::start_recording(const Received& received, const std::string& name) {
                           : "the recording '" + active->name + "' is going on: stop it first");
     steer(received);
     end_swings();  // a log's header knows nothing of them
-    tap_.reset();
+    swings_.forget_tap();
     options_.recordings->begin(++newest_recording_, name, log_header());
     recordings_[newest_recording_] = {time_, {}, {received.client, received.message}};
     press_anew(received.client);
@@ -60,7 +60,7 @@ void Room::recording_opened(std::int64_t recording, const tl::expected<std::stri
         return;
     }
     document();
-    changing_ = client;
+    revisions_.begin(client);
     found->second.name = *name;
     if (!stop) state_.recording = protocol::RecordingState{*name};
     if (clients_.contains(client)) answer(received, *name);
@@ -159,13 +159,13 @@ protocol::LogHeader Room::header_of_now() const {
     header.view = view_size_;
     header.at_home = at_home_;
     header.home = starting_.views->at("home");
-    for (const Frame& frame : frames_)
+    for (const SeenFrame& frame : frames_.all())
         header.frames.push_back({frame.number, state_of(frame.camera, scene_->bounds), frame.view_size});
     if (flight_)
         header.flight = {flight_->client, flight_->id,
                          static_cast<double>((time_ - flight_->start).count()) / 1000, flight_->from,
                          flight_->asked};
-    header.walls = logged_walls();
+    header.walls = walls_.logged(time_);
     return header;
 }
 
@@ -182,9 +182,9 @@ RecordingSink::Header Room::log_header() const {
 // --- the journal, which another server follows
 
 std::optional<Checkpoint> Room::checkpoint() {
-    const bool is_quiet = swings_.empty() && !tap_ && !gestures_.any_pressed() &&
+    const bool is_quiet = swings_.empty() && !swings_.is_tapped() && !gestures_.any_pressed() &&
                           gestures_.held_keys().empty() && requests_.empty() && recordings_.empty() &&
-                          !steering_.deadline() && !(walls_ && walls_->due);
+                          !steering_.deadline() && !walls_.due();
     if (!is_quiet) return std::nullopt;
     Checkpoint now{header_of_now(), {document()->revision(), state_.notices, ""}};
     now.header.state = protocol::document_of(state_);
@@ -210,9 +210,8 @@ void Room::follow(const protocol::LogLine::Revised& revised, SessionTime at) {
         state_.recording.reset();
         if (!revised.recording->empty()) state_.recording = protocol::RecordingState{*revised.recording};
     }
-    state_.walls = walls_state();
-    if (revised.revision > document_->revision())
-        document_ = protocol::StateDocument::next(*document_, state_, revised.revision);
+    state_.walls = walls_.state(camera(), scene_->bounds, state_.unit.metres);
+    if (revised.revision > revisions_.newest().revision()) revisions_.go_to(revised.revision, state_);
 }
 
 void Room::go_on(RoomOptions options) {

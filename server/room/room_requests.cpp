@@ -192,7 +192,7 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     restore_clients(header.clients);
     for (const protocol::LoggedFrame& frame : header.frames)
-        frames_.push_back({frame.frame, camera_of(frame.camera), frame.view});
+        frames_.add({frame.frame, camera_of(frame.camera), frame.view});
     if (const auto& flight = header.flight) {
         const auto path = flight_path(flight->fly, camera_of(flight->from), *scene_);
         if (!path) return tl::unexpected(path.error());
@@ -204,19 +204,19 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     update_visible();
     use_walls();
     if (header.walls)
-        if (auto error = restore_walls(*header.walls)) return tl::unexpected(*std::move(error));
-    if (header.revision > 0) document_ = protocol::StateDocument::next({}, state_, header.revision);
+        if (auto error = walls_.restore(*header.walls, time_)) return tl::unexpected(*std::move(error));
+    if (header.revision > 0) revisions_.go_to(header.revision, state_, true);
     return {};
 }
 
 void Room::restore_clients(const std::vector<protocol::LogHeader::Client>& clients) {
     for (const protocol::LogHeader::Client& client : clients) {
         if (may(client.role, protocol::Right::hold_control)) steering_.arrive(client.client, client.resume);
-        add_client(client.client, {client.role, client.wanted, client.name, client.resume});
+        clients_.add(client.client, {client.role, client.wanted, client.name, client.resume});
     }
     if (state_.control.holder) steering_.take(*state_.control.holder);
     for (const protocol::ControlState::Asking& asking : state_.control.asking) steering_.ask(asking.client);
-    list_clients();
+    state_.clients.set(clients_.listed());
 }
 
 }  // namespace vrut::server::room

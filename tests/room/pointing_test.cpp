@@ -89,7 +89,7 @@ TEST_CASE("at most 30 points a second of a client go on, and the last one in the
     stage.say("v", at(651));
     stage.say("v", at(660));
     CHECK(pointed(stage).empty());
-    CHECK(stage.room.deadline() == SessionTime(1100ms) + kPointsApart);
+    CHECK(stage.room.deadline() == SessionTime(1100ms) + Pointings::kApart);
     stage.at(1133ms);
     CHECK(pointed(stage).empty());
     stage.at(*stage.room.deadline());

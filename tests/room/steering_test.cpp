@@ -8,9 +8,9 @@ using namespace std::chrono_literals;
 
 namespace {
 
-using Clients = std::vector<std::string>;
+using ClientIds = std::vector<std::string>;
 
-Steering steering_of(const Clients& clients) {
+Steering steering_of(const ClientIds& clients) {
     Steering steering;
     for (const std::string& client : clients) steering.join(client, "key of " + client);
     return steering;
@@ -111,10 +111,10 @@ TEST_CASE("take succeeds whoever holds control; release gives it back to who hel
 TEST_CASE("release gives control to who asked first; who is alone keeps it") {
     Steering steering = steering_of({"a", "b", "c"});
     for (const char* client : {"c", "b", "c", "a"}) steering.ask(client);
-    CHECK(steering.asking() == Clients{"c", "b"});  // once each, and not the holder
+    CHECK(steering.asking() == ClientIds{"c", "b"});  // once each, and not the holder
     steering.release();
     CHECK(steering.holder() == "c");
-    CHECK(steering.asking() == Clients{"b"});
+    CHECK(steering.asking() == ClientIds{"b"});
     steering.decline("b");
     CHECK(steering.asking().empty());
     steering.ask("a");

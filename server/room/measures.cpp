@@ -1,9 +1,9 @@
-// What picks snap to, and what measures come to as the parts stand.
+#include "room/measures.hpp"
+
 #include <cmath>
 
 #include "measurement/measure.hpp"
 #include "measurement/snap_around.hpp"
-#include "room/room.hpp"
 
 namespace vrut::server::room {
 
@@ -43,24 +43,25 @@ std::vector<Snap> snaps_of(const std::vector<protocol::Snap>& snaps) {
 
 }  // namespace
 
-std::optional<protocol::Snapped> Room::snapped_at(const Frame& seen, const protocol::Pick& pick) const {
+std::optional<protocol::Snapped> Measures::snapped(const scene::PlacedScene& placed, const SeenFrame& seen,
+                                                   const protocol::Pick& pick, const Hit& hit,
+                                                   std::span<const scene::ClipPlane> clip_planes) const {
     const double pixel = 2 * std::tan(seen.camera.fov * scene::kRadiansPerDegree / 2) / seen.view_size.height;
-    const auto best = measurement::snap_around(
-        *scene_, ray_at(seen, pick.x, pick.y),
-        [&](const mesh::Ray& ray) { return hit_along(ray, pick.through); },
-        {pick.snap->within * pixel, snaps_of(pick.snap->to), visible_.clip_planes}, mesh_edges_);
+    const auto best =
+        measurement::snap_around(placed, seen.ray_at(pick.x, pick.y), hit,
+                                 {pick.snap->within * pixel, snaps_of(pick.snap->to), clip_planes}, edges_);
     if (!best) return {};
     const auto& feature = best->feature;
     return protocol::Snapped{
         {feature.node, static_cast<protocol::Snap>(feature.snap), feature.points}, best->point, best->line};
 }
 
-std::optional<Error> Room::check_measures(const protocol::State& next) const {
-    if (next.measures == state_.measures) return {};
-    for (const auto& [name, measure] : *next.measures) {
+std::optional<Error> Measures::problem_of(const protocol::SharedMap<protocol::MeasureState>& measures,
+                                          const scene::Scene& scene) {
+    for (const auto& [name, measure] : *measures) {
         const std::string where = "'measures." + name.substr(0, 40) + "'";
         for (const protocol::Feature& pick : measure.picks)
-            if (scene_->scene->find_node(pick.node) == scene::kNone)
+            if (scene.find_node(pick.node) == scene::kNone)
                 return Error{
                     {}, code::unknown_node, where + ": there is no node " + std::to_string(pick.node)};
         const auto kind = static_cast<measurement::Kind>(measure.kind);
@@ -70,15 +71,17 @@ std::optional<Error> Room::check_measures(const protocol::State& next) const {
     return {};
 }
 
-void Room::measure() {
-    if (measured_in_ == scene_ && measured_of_ == state_.measures) return;
-    measured_in_ = scene_;
-    measured_of_ = state_.measures;
-    std::map<std::string, protocol::MeasuredState> measured;
-    for (const auto& [name, measure] : *state_.measures)
+std::optional<Measures::Results> Measures::changed(
+    const protocol::SharedMap<protocol::MeasureState>& measures,
+    const std::shared_ptr<const scene::PlacedScene>& placed) {
+    if (placed_ == placed && measures_ == measures) return std::nullopt;
+    placed_ = placed;
+    measures_ = measures;
+    Results measured;
+    for (const auto& [name, measure] : *measures)
         measured[name] = measured_state_of(measurement::measure(
-            *scene_, static_cast<measurement::Kind>(measure.kind), features_of(measure), mesh_edges_));
-    state_.measured.set(std::move(measured));
+            *placed, static_cast<measurement::Kind>(measure.kind), features_of(measure), edges_));
+    return measured;
 }
 
 }  // namespace vrut::server::room
