@@ -36,7 +36,7 @@ room::RoomOptions Engine::live_options() {
 void Engine::handle(const FollowFrom& from) {
     if (!follows_) return;
     room::RoomOptions options;
-    options.follows = true;
+    options.policy = room::kFollow;
     room_.emplace(prepared(*from.scene), std::move(options));
     if (const auto restored = room_->restore(from.checkpoint->header); !restored)
         return shared_->on_failure("its state cannot be used: " + restored.error().message);

@@ -23,18 +23,4 @@ struct RecordingSink {
     std::function<void(std::int64_t recording)> end;
 };
 
-/// A message that is answered later.
-struct AnsweredLater {
-    std::string client;
-    protocol::ClientMessage message;
-};
-
-/// A log that is being written.
-struct Recording {
-    protocol::LogTime since{0};  ///< when it began
-    std::string name = {};       ///< empty: it is not open yet
-    AnsweredLater start;
-    std::optional<AnsweredLater> stop = {};  ///< no more lines come
-};
-
 }  // namespace vrut::server::room

@@ -89,7 +89,7 @@ tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& f
     auto scene = find_scene(log.header.scene, log.header.scene_sha256, log.header.up_axis);
     if (!scene) return tl::unexpected(scene.error());
     RoomOptions options;
-    options.replaying = true;
+    options.policy = kReplay;
     Room room(*std::move(scene), std::move(options));
     if (const auto restored = room.restore(log.header); !restored)
         return tl::unexpected("line 1: " + restored.error().message);

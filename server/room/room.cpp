@@ -19,7 +19,9 @@ Room::Room(scenes::LoadedScene scene, RoomOptions options)
       scene_(loaded_.placed),
       starting_(starting_state(loaded_, aspect())),
       state_(starting_),
-      at_home_(!state_.camera.node) {
+      at_home_(!state_.camera.node),
+      recordings_(options_.recordings),
+      journal_(options_.journal) {
     lay_changes();
     revisions_.go_to(1, state_, true);
     visible_ = view_of(state_, scene_);
@@ -30,14 +32,14 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     advance(at);
     document();
     revisions_.begin({});  // who holds control is the server's doing
-    const std::string shown = options_.replaying ? name : clients_.free_name(name, resume_key);
+    const std::string shown = options_.policy.by_log ? name : clients_.free_name(name, resume_key);
     clients_.add(client, {role, {}, shown, resume_key});
     state_.clients.set(clients_.listed());
     use_walls();
-    write_recording(client, protocol::LogLine::Connected{role, shown});
-    write_journal(client, protocol::LogLine::Connected{role, shown, resume_key});
+    recordings_.write(time_, client, protocol::LogLine::Connected{role, shown});
+    journal_.write(time_, client, protocol::LogLine::Connected{role, shown, resume_key});
     if (!may(role, Right::hold_control)) return;
-    if (options_.replaying) return;
+    if (options_.policy.by_log) return;
     steering_.join(client, resume_key);
     show_holder();
     record_holder();
@@ -61,7 +63,7 @@ void Room::leave(const std::string& client, SessionTime at) {
         end_flight(false);
         recorded_holder_ = {client, true};  // by that line
     }
-    steering_.leave(client, time_, options_.replaying);
+    steering_.leave(client, time_, options_.policy.by_log);
     clients_.erase(client);
     state_.clients.set(clients_.listed());
     show_holder();
@@ -72,7 +74,7 @@ void Room::leave(const std::string& client, SessionTime at) {
 
 void Room::pass_control(const std::string& client, SessionTime at) {
     advance(at);
-    if (options_.follows) return;  // it has, likewise
+    if (!options_.policy.by_log) return;  // it has, by the same rules
     if (client.empty())
         steering_.clear_holder();
     else if (clients_.contains(client))
@@ -112,28 +114,26 @@ bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     if (revisions_.changing() != received.client) document();  // a revision is one client's doing
     revisions_.begin(received.client);
     accepted_ = false;
-    const bool recorded = active_recording() != nullptr;
+    const bool recorded = recordings_.active() != nullptr;
     apply();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
     update_visible();
     use_walls();
     if (accepted_ && received.traits.recorded) {
-        write_journal(received.client, received.message);
-        if (recorded) write_recording(received.client, received.message);
+        journal_.write(time_, received.client, received.message);
+        if (recorded) recordings_.write(time_, received.client, received.message);
     }
     record_holder();
     return accepted_;
 }
 
 std::int64_t Room::answer_later(const Received& received) {
-    requests_[++newest_request_] = {received.client, received.message};
-    return newest_request_;
+    return requests_.add({received.client, received.message});
 }
 
 std::optional<AnsweredLater> Room::take_request(std::int64_t request) {
-    auto found = requests_.extract(request);
-    if (found.empty() || !is_here(found.mapped())) return std::nullopt;
-    return std::move(found.mapped());
+    auto asked = requests_.take(request);
+    return asked && is_here(*asked) ? asked : std::nullopt;
 }
 
 void Room::load_answered(std::int64_t request, const std::optional<protocol::Error>& rejection,
@@ -184,7 +184,7 @@ void Room::advance(SessionTime at) {
 
 void Room::advance_to(SessionTime at) {
     time_ = std::max(time_, at);
-    if (const auto due = steering_.deadline(); due && !options_.replaying && *due <= time_) {
+    if (const auto due = steering_.deadline(); due && !options_.policy.by_log && *due <= time_) {
         document();
         revisions_.begin({});
         steering_.advance(time_);
@@ -288,10 +288,10 @@ void Room::apply(const Received& received, const protocol::Resize& resize) {
 void Room::apply(const Received& received, const protocol::Control& control) {
     using Action = protocol::Control::Action;
     const std::string& client = received.client;
-    const bool holds = steering_.holds(client) || !options_.judges();
+    const bool holds = steering_.holds(client) || !options_.policy.judges;
     if ((control.action == Action::give || control.action == Action::decline) && !holds)
         return reject_not_in_control(received);
-    if (control.action == Action::give && options_.judges() && !steering_.is_here(*control.client))
+    if (control.action == Action::give && options_.policy.judges && !steering_.is_here(*control.client))
         return reject(received, code::out_of_range,
                       "'client': there is no control client '" + control.client->substr(0, 40) + "' here");
     switch (control.action) {
@@ -304,7 +304,7 @@ void Room::apply(const Received& received, const protocol::Control& control) {
             gestures_.lift(client, camera());
             clicks_.lift(client);
             recorded_holder_ = {};  // until a line of its own says who does
-            if (options_.replaying)
+            if (options_.policy.by_log)
                 steering_.clear_holder();
             else
                 steering_.release();
@@ -328,7 +328,7 @@ void Room::apply(const Received& received, const protocol::Control& control) {
 }
 
 void Room::apply(const Received& received, const protocol::Shown& shown) {
-    if (options_.judges() && shown.revision > document()->revision())
+    if (options_.policy.judges && shown.revision > document()->revision())
         return reject(received, code::out_of_range,
                       "'revision': the newest is " + std::to_string(document()->revision()));
     answer(received);
@@ -373,7 +373,7 @@ bool Room::may_steer(const Received& received) {
     const bool is_free = may(clients_.at(received.client).role, Right::drive_walls)
                              ? steering_.is_quiet(time_) && !gestures_.any_pressed()
                              : steering_.holds(received.client);
-    if (is_free || !options_.judges()) return true;
+    if (is_free || !options_.policy.judges) return true;
     if (!received.is_input()) reject_not_in_control(received);
     return false;
 }
@@ -395,7 +395,7 @@ void Room::steer(const Received& received) {
     if (!is_beside_flights) end_flight(false);
     if (may(clients_.at(received.client).role, Right::drive_walls)) return;
     steering_.steer(time_);
-    if (!options_.replaying) return;
+    if (!options_.policy.by_log) return;
     if (std::holds_alternative<protocol::Pointer>(payload) && !steering_.holds(received.client))
         size_waits_ = true;
     steering_.take(received.client);
@@ -425,7 +425,8 @@ void Room::show_holder() {
 void Room::record_holder() {
     const std::pair now(state_.control.holder, state_.control.absent);
     if (std::exchange(recorded_holder_, now) == now) return;
-    if (!options_.replaying) record(state_.control.holder.value_or(""), protocol::LogLine::ControlPassed{});
+    if (!options_.policy.by_log)
+        record(state_.control.holder.value_or(""), protocol::LogLine::ControlPassed{});
 }
 
 void Room::use_holders_size() {

@@ -21,7 +21,7 @@
 #include "room/clients.hpp"
 #include "room/measures.hpp"
 #include "room/pointings.hpp"
-#include "room/recording.hpp"
+#include "room/recordings.hpp"
 #include "room/revisions.hpp"
 #include "room/scene_state.hpp"
 #include "room/seen_frames.hpp"
@@ -34,6 +34,19 @@
 
 namespace vrut::server::room {
 
+/// How a room takes what is said.
+struct Policy {
+    /// By rights, by who holds control and by revisions; else it was accepted elsewhere.
+    bool judges;
+    /// Who holds control is as a log says, and names are; else by the room's own rules.
+    bool by_log;
+};
+inline constexpr Policy kLive{true, false};
+/// A recorded session: control passes on as the log says, and who steers takes it.
+inline constexpr Policy kReplay{false, true};
+/// The same messages come as to a room that another server draws, and control passes on as it does there.
+inline constexpr Policy kFollow{false, false};
+
 struct RoomOptions {
     std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
     /// Begins to load a scene; Room::load_answered() reports whether it has begun.
@@ -43,14 +56,7 @@ struct RoomOptions {
     ShareAddress share = {};  ///< none: nowhere
     /// Takes each line of the log of all that happens here, with times of the session.
     std::function<void(protocol::LogLine line)> journal = {};
-    /// What is said was accepted before: it is not judged again by revisions or by who holds control, nor
-    /// recorded. Control passes on as the log says.
-    bool replaying = false;
-    /// The same messages come as to a room that another server draws: they are not judged again, but control
-    /// passes on as it does there.
-    bool follows = false;
-
-    bool judges() const { return !replaying && !follows; }
+    Policy policy = kLive;
 };
 
 /// The scene, the state and the camera that all clients share, who steers them, and what each message does to
@@ -307,13 +313,9 @@ private:
     // --- recordings
     void start_recording(const Received& received, const std::string& name);
     void stop_recording(const Received& received);
-    /// The one that takes lines.
-    Recording* active_recording();
     protocol::LogHeader header_of_now() const;
     RecordingSink::Header log_header() const;
-    void write_journal(const std::string& client, decltype(protocol::LogLine::what) what);
-    void write_recording(const std::string& client, decltype(protocol::LogLine::what) what);
-    /// Both.
+    /// In recording and journal.
     void record(const std::string& client, decltype(protocol::LogLine::what) what);
     void press_anew(const std::string& client);
 
@@ -364,10 +366,9 @@ private:
     mutable mesh::WatertightMemo watertight_;
     Measures measures_;
     SeenFrames frames_;
-    std::int64_t newest_request_ = 0, newest_recording_ = 0;
-    std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk
-    std::map<std::int64_t, Recording> recordings_;    ///< until all of them is written
-    protocol::LogLine::Revised journaled_;            ///< as the journal has it
+    AnswersLater requests_;
+    Recordings recordings_;
+    Journal journal_;
 };
 
 }  // namespace vrut::server::room

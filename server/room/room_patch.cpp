@@ -27,7 +27,8 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
         return reject(received, code::not_allowed,
                       "a host may patch nothing but " + listed(protocol::Sections::for_hosts));
     if (!may_steer(received)) return;
-    if (patch.if_revision && options_.judges() && document()->last_change(*patch.patch) > *patch.if_revision)
+    if (patch.if_revision && options_.policy.judges &&
+        document()->last_change(*patch.patch) > *patch.if_revision)
         return reject(
             received, code::stale_revision,
             "what the patch touches has changed since revision " + std::to_string(*patch.if_revision));

@@ -7,20 +7,14 @@ namespace vrut::server::room {
 
 namespace code = protocol::error_code;
 
-Recording* Room::active_recording() {
-    if (recordings_.empty()) return nullptr;
-    Recording& newest = recordings_.rbegin()->second;
-    return newest.stop ? nullptr : &newest;
-}
-
 void Room::apply(const Received& received, const protocol::Record& record) {
-    if (!options_.judges()) {
+    if (!options_.policy.judges) {
         steer(received);
         end_swings();
         swings_.forget_tap();
         return answer(received);
     }
-    if (!options_.recordings)
+    if (!recordings_.has_sink())
         return reject(received, code::not_allowed,
                       "this server has no folder for recordings: start it with --record");
     if (record.action == protocol::Record::Action::start)
@@ -31,7 +25,7 @@ void Room::apply(const Received& received, const protocol::Record& record) {
 
 /// From here on there are lines, whenever its file is open.
 void Room::start_recording(const Received& received, const std::string& name) {
-    if (const Recording* active = active_recording())
+    if (const Recording* active = recordings_.active())
         return reject(received, code::busy,
                       active->name.empty()
                           ? "a recording is being begun already"
@@ -39,21 +33,20 @@ void Room::start_recording(const Received& received, const std::string& name) {
     steer(received);
     end_swings();  // a log's header knows nothing of them
     swings_.forget_tap();
-    options_.recordings->begin(++newest_recording_, name, log_header());
-    recordings_[newest_recording_] = {time_, {}, {received.client, received.message}};
+    recordings_.begin(name, log_header(), time_, {received.client, received.message});
     press_anew(received.client);
 }
 
 void Room::recording_opened(std::int64_t recording, const tl::expected<std::string, std::string>& name,
                             SessionTime at) {
-    const auto found = recordings_.find(recording);
-    if (found == recordings_.end()) return;
+    Recording* const found = recordings_.find(recording);
+    if (!found) return;
     advance(at);
-    const auto [client, message] = found->second.start;
-    const auto stop = found->second.stop;
+    const auto [client, message] = found->start;
+    const auto stop = found->stop;
     const Received received{client, message};
     if (!name) {
-        recordings_.erase(found);
+        recordings_.take(recording);
         if (clients_.contains(client)) reject(received, code::failed, name.error());
         if (stop && is_here(*stop))
             reject({stop->client, stop->message}, code::failed, "nothing has been recorded");
@@ -61,27 +54,25 @@ void Room::recording_opened(std::int64_t recording, const tl::expected<std::stri
     }
     document();
     revisions_.begin(client);
-    found->second.name = *name;
+    found->name = *name;
     if (!stop) state_.recording = protocol::RecordingState{*name};
     if (clients_.contains(client)) answer(received, *name);
 }
 
 void Room::stop_recording(const Received& received) {
-    Recording* active = active_recording();
-    if (!active) return reject(received, code::failed, "nothing is being recorded");
+    if (!recordings_.active()) return reject(received, code::failed, "nothing is being recorded");
     steer(received);
-    write_recording(received.client, received.message);
-    active->stop = {received.client, received.message};
-    options_.recordings->end(recordings_.rbegin()->first);
+    recordings_.write(time_, received.client, received.message);
+    recordings_.end({received.client, received.message});
     state_.recording.reset();
 }
 
 void Room::recording_ended(std::int64_t recording, const std::optional<std::string>& why, SessionTime at) {
-    const auto found = recordings_.extract(recording);
-    if (found.empty()) return;
+    const auto ended = recordings_.take(recording);
+    if (!ended) return;
     advance(at);
-    const std::string& name = found.mapped().name;
-    const auto& stop = found.mapped().stop;
+    const std::string& name = ended->name;
+    const auto& stop = ended->stop;
     if (why) {
         notice({protocol::notice_code::recording_ended, "The recording '" + name + "' has ended: " + *why});
         if (!stop) state_.recording.reset();
@@ -126,19 +117,8 @@ void Room::press_anew(const std::string& client) {
 }
 
 void Room::record(const std::string& client, decltype(protocol::LogLine::what) what) {
-    write_journal(client, what);
-    write_recording(client, std::move(what));
-}
-
-void Room::write_journal(const std::string& client, decltype(protocol::LogLine::what) what) {
-    if (options_.journal) options_.journal({time_, client, std::move(what)});
-}
-
-void Room::write_recording(const std::string& client, decltype(protocol::LogLine::what) what) {
-    if (const Recording* active = active_recording())
-        options_.recordings->write(
-            recordings_.rbegin()->first,
-            protocol::encode(protocol::LogLine{time_ - active->since, client, std::move(what)}));
+    journal_.write(time_, client, what);
+    recordings_.write(time_, client, std::move(what));
 }
 
 protocol::LogHeader Room::header_of_now() const {
@@ -194,14 +174,7 @@ std::optional<Checkpoint> Room::checkpoint() {
     return now;
 }
 
-void Room::write_revision() {
-    const std::string recording = state_.recording ? state_.recording->name : "";
-    protocol::LogLine::Revised revised{document()->revision(), {}, {}};
-    if (journaled_.notices != state_.notices) revised.notices = journaled_.notices = state_.notices;
-    if (journaled_.recording != recording) revised.recording = journaled_.recording = recording;
-    if (revised.revision == std::exchange(journaled_.revision, revised.revision)) return;
-    write_journal({}, revised);
-}
+void Room::write_revision() { journal_.write_revision(time_, document()->revision(), state_); }
 
 void Room::follow(const protocol::LogLine::Revised& revised, SessionTime at) {
     advance(at);
@@ -216,7 +189,9 @@ void Room::follow(const protocol::LogLine::Revised& revised, SessionTime at) {
 
 void Room::go_on(RoomOptions options) {
     options_ = std::move(options);
-    options_.replaying = options_.follows = false;
+    options_.policy = kLive;
+    recordings_ = Recordings(options_.recordings);
+    journal_.use(options_.journal);
     state_.recording.reset();  // its file was another server's
 }
 

@@ -141,7 +141,7 @@ struct Play {
 /// Played by a server that looks at the time, and tells its clients of it, at whatever moments it likes.
 protocol::CameraState played_restlessly(const EventLog& log, std::mt19937& dice) {
     RoomOptions options;
-    options.replaying = true;
+    options.policy = kReplay;
     Room room(*find_scene(log.header.scene, log.header.scene_sha256), options);
     REQUIRE(room.restore(log.header));
     SessionTime now{0};
@@ -162,7 +162,7 @@ using WallsPose = std::array<double, 9>;
 /// The cameras that hosts had while they were behind, in a room that is advanced by `step` each time.
 std::vector<WallsPose> walls_of(const EventLog& log, SessionTime step) {
     RoomOptions options;
-    options.replaying = true;
+    options.policy = kReplay;
     Room room(*find_scene(log.header.scene, log.header.scene_sha256), options);
     REQUIRE(room.restore(log.header));
     std::vector<WallsPose> poses;

@@ -35,7 +35,7 @@ public:
     /// A room to which the same lines came, with no calls of advance() between.
     Room replayed() {
         RoomOptions replaying;
-        replaying.replaying = true;
+        replaying.policy = kReplay;
         Room room(in_metres(), replaying);
         for (const protocol::LogLine& line : lines)
             CHECK_FALSE(play(room, line, [](const auto&...) { return other_scene(); }));
@@ -109,7 +109,7 @@ TEST_CASE("a recording that begins while hosts are behind replays to the same wa
     RoomOptions recorded, replaying;
     recorded.recordings = {[&](auto, const auto&, RecordingSink::Header first) { header = std::move(first); },
                            [](auto, const auto&) {}, [](auto) {}};
-    replaying.replaying = true;
+    replaying.policy = kReplay;
     Stage stage("ah", in_metres(), recorded);
     stage.say("a", kFlick);
     constexpr SessionTime kBegin = 205ms;
@@ -136,7 +136,7 @@ TEST_CASE("walls of a recording that are no camera are refused") {
     header.walls = protocol::LogHeader::Walls{};
     header.walls->camera.eye = header.walls->camera.focus;
     RoomOptions replaying;
-    replaying.replaying = true;
+    replaying.policy = kReplay;
     Stage replay("", in_metres(), replaying);
     const auto restored = replay.room.restore(header);
     REQUIRE_FALSE(restored);

@@ -327,7 +327,7 @@ TEST_CASE("cues: a recording whose cues do not go with the scene is refused") {
     const auto checkpoint = stage.room.checkpoint();
     REQUIRE(checkpoint);
     RoomOptions options;
-    options.replaying = true;
+    options.policy = kReplay;
     Stage replay("", other_scene(), options);
     const auto restored = replay.room.restore(checkpoint->header);
     REQUIRE_FALSE(restored);
@@ -341,7 +341,7 @@ TEST_CASE("cues: a recording that begins in a presentation replays to the same")
     const auto checkpoint = stage.room.checkpoint();
     REQUIRE(checkpoint);
     RoomOptions options;
-    options.replaying = true;
+    options.policy = kReplay;
     Stage replay("", scene_with_a_door(), options);
     REQUIRE(replay.room.restore(checkpoint->header));
     for (Stage* each : std::initializer_list<Stage*>{&stage, &replay}) {

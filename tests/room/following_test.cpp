@@ -19,7 +19,7 @@ public:
 
     static RoomOptions following() {
         RoomOptions options;
-        options.follows = true;
+        options.policy = kFollow;
         return options;
     }
 

@@ -2,12 +2,14 @@
 #include <doctest/doctest.h>
 
 #include <chrono>
+#include <vector>
 
 #include "io/vrut/text_reader.hpp"
 #include "room/clients.hpp"
 #include "room/hinges.hpp"
 #include "room/measures.hpp"
 #include "room/pointings.hpp"
+#include "room/recordings.hpp"
 #include "room/revisions.hpp"
 #include "room/seen_frames.hpp"
 #include "room/swings.hpp"
@@ -278,4 +280,61 @@ TEST_CASE("a tap sets a door off when it can become no double one, unless it is 
     swings.forget_tap();
     swings.use_tap(placed, 400ms);
     CHECK(swings.empty());
+}
+
+TEST_CASE("one recording takes lines, and is known until all of it is written") {
+    std::vector<std::string> done;
+    RecordingSink sink;
+    sink.begin = [&](std::int64_t number, const std::string& name, const auto&) {
+        done.push_back("begin " + std::to_string(number) + " " + name);
+    };
+    sink.write = [&](std::int64_t number, const std::string& line) {
+        done.push_back("write " + std::to_string(number) + " " + line);
+    };
+    sink.end = [&](std::int64_t number) { done.push_back("end " + std::to_string(number)); };
+    Recordings recordings(sink);
+    recordings.write(0ms, "c1", protocol::LogLine::Disconnected{});
+    CHECK(done.empty());
+    recordings.begin("tour", {}, 100ms, {"c1", {}});
+    CHECK(recordings.active() == recordings.find(1));
+    recordings.write(150ms, "c1", protocol::LogLine::Disconnected{});
+    recordings.end({"c2", {}});
+    CHECK(recordings.active() == nullptr);
+    recordings.write(160ms, "c1", protocol::LogLine::Disconnected{});
+    CHECK(done == std::vector<std::string>{"begin 1 tour",
+                                           R"(write 1 {"at":50.0,"client":"c1","event":"disconnected"})",
+                                           "end 1"});
+    recordings.begin("next", {}, 200ms, {"c1", {}});
+    CHECK(recordings.active() == recordings.find(2));
+    CHECK(recordings.take(1)->stop->client == "c2");
+    CHECK_FALSE(recordings.take(1));
+    CHECK_FALSE(recordings.empty());
+    CHECK_FALSE(Recordings(std::nullopt).has_sink());
+}
+
+TEST_CASE("the journal names a revision once, and with it what it does not know of notices and recording") {
+    std::vector<std::string> lines;
+    Journal journal([&](const protocol::LogLine& line) { lines.push_back(protocol::encode(line)); });
+    protocol::State state;
+    journal.write_revision(0ms, 1, state);
+    journal.write_revision(0ms, 1, state);
+    CHECK(lines == std::vector<std::string>{
+                       R"({"at":0.0,"event":"revised","notices":[],"recording":"","revision":1})"});
+    state.recording = protocol::RecordingState{"tour"};
+    journal.write_revision(5ms, 2, state);
+    CHECK(lines.back() == R"({"at":5.0,"event":"revised","recording":"tour","revision":2})");
+    journal.write_revision(5ms, 3, state);
+    CHECK(lines.back() == R"({"at":5.0,"event":"revised","revision":3})");
+    Journal(nullptr).write(0ms, "c1", protocol::LogLine::Disconnected{});
+}
+
+TEST_CASE("what is answered later is so once") {
+    AnswersLater later;
+    const std::int64_t first = later.add({"c1", {}}), second = later.add({"c2", {}});
+    CHECK(first != second);
+    CHECK(later.take(second)->client == "c2");
+    CHECK_FALSE(later.take(second));
+    CHECK_FALSE(later.empty());
+    CHECK(later.take(first)->client == "c1");
+    CHECK(later.empty());
 }
