@@ -127,7 +127,11 @@ constexpr void add_optional(Type& type) {
             const T& optional = *static_cast<const T*>(value);
             return optional ? &*optional : nullptr;
         };
-        type.hold = [](void* value) -> void* { return &static_cast<T*>(value)->emplace(); };
+        type.hold = [](void* value) -> void* {
+            T& optional = *static_cast<T*>(value);
+            optional = typename T::value_type{};
+            return &*optional;
+        };
     }
 }
 /// Of what is always written.

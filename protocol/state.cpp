@@ -164,6 +164,9 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
         if (const auto control = document.find("control"); control != document.end()) {
             state.control = read_struct<ControlState>(*control, "control");
             state.control.absent = false;
+            for (const ControlState::Asking& asking : state.control.asking)
+                if (asking.client.empty())
+                    throw BadJson{error_code::bad_message, "member 'control.asking.client' is missing"};
         }
         return state;
     });

@@ -17,7 +17,7 @@ struct BodiesSent::Entry {
 };
 
 BodiesSent::Sending BodiesSent::add(const Body& body, std::function<void()> cut) {
-    const auto entry = std::make_shared<Entry>(*this, body, std::move(cut));
+    const std::shared_ptr<Entry> entry(new Entry{*this, body, std::move(cut)});
     if (senders_[body]++ == 0) bytes_ += body->size();
     entry->place = entries_.insert(entries_.end(), entry.get());
     while (bytes_ > most_ && entries_.size() > 1) {

@@ -344,7 +344,8 @@ void check_file(const std::string& path, const std::string& text) {
 
 TEST_CASE("every type of client message stands in the table of who may send it") {
     const std::vector<MessageType> types = message_types();
-    for (const auto& [traits, prototype] : protocol::client_message_types()) {
+    for (const protocol::ClientMessageType& each : protocol::client_message_types()) {
+        const protocol::MessageTraits& traits = each.traits;
         const auto is_of_type = [&](const MessageType& type) { return type.message["type"] == traits.type; };
         CAPTURE(traits.type);
         CHECK((std::any_of(types.begin(), types.end(), is_of_type) || traits.type == std::string("hello")));

@@ -89,7 +89,7 @@ TEST_CASE("the state of a scene with all that clients may change is no longer th
     state.nodes.set(std::move(nodes));
     std::map<std::string, protocol::ViewState> views;
     for (std::size_t i = 0; i < protocol::kMaxEntries; ++i)
-        views[name + std::to_string(i)] = {longest, longest, longest, longest, kLong};
+        views[name + std::to_string(i)] = {{longest, longest, longest, longest, kLong}, {}};
     state.views.set(std::move(views));
     CHECK(bytes() < most_state_bytes(loaded) + protocol::kMaxServerMessageBytes - kMaxStateBytes);
 }
