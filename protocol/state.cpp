@@ -72,7 +72,7 @@ void save_present(const Json& entries, const T& saved, SharedMap<T>& starting, S
 
 CueState cue_of(const State& state) {
     CueState cue;
-    cue.camera = state.camera;
+    cue.camera = static_cast<const Pose&>(state.camera);
     copy_common_fields(in_cues, table_of<CueState>(), &cue, table_of<State>(), &state);
     return cue;
 }
@@ -104,7 +104,7 @@ State patched_or_throw(const State& state, const State& starting, const Json& pa
     if (const Json* views = section("views")) {
         CameraState camera = state.camera;
         if (const Json* named = section("camera")) patch_struct(camera, starting.camera, *named, "camera");
-        save_present(*views, {camera, {}}, start.views, result.views);
+        save_present(*views, {static_cast<const Pose&>(camera), {}}, start.views, result.views);
     }
     if (const Json* cues = section("cues")) {
         State shown = result;
@@ -136,7 +136,7 @@ void sign_notes(const State& before, const Json& patch, const std::optional<std:
         const auto note = notes.find(name);
         if (note == notes.end() || before.markers->contains(name)) continue;
         if (!given.contains("author")) note->second.author = author;
-        if (!given.contains("view")) note->second.view = next.camera;
+        if (!given.contains("view")) note->second.view = static_cast<const Pose&>(next.camera);
     }
     next.markers.set(std::move(notes));
 }
