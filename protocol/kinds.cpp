@@ -21,7 +21,8 @@ void Kind::restore(void* value, const Json& json, const std::string& path) const
 
 KindPtr keep(std::unique_ptr<const Kind> kind) {
     static std::mutex mutex;
-    static auto& kinds = *new std::vector<std::unique_ptr<const Kind>>;  // to the very end: threads may use them
+    static auto& kinds =
+        *new std::vector<std::unique_ptr<const Kind>>;  // to the very end: threads may use them
     const std::lock_guard lock(mutex);
     return kinds.emplace_back(std::move(kind)).get();
 }
