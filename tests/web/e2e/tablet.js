@@ -99,7 +99,7 @@ export class Tablet {
     tablet.wire = new Wire(tablet.page);
     tablet.page.on('pageerror', (error) => tablet.complaints.push(String(error)));
     tablet.page.on('console', (message) => {
-      const expected = tablet.serverAway && message.text().includes('WebSocket connection');
+      const expected = tablet.serverAway && /WebSocket connection|ERR_CONNECTION_REFUSED/.test(message.text());
       if (message.type() === 'error' && !expected) tablet.complaints.push(message.text());
     });
     tablet.devtools = await context.newCDPSession(tablet.page);
