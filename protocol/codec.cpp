@@ -45,11 +45,9 @@ void check(const decltype(ClientMessage::payload)& payload) {
     if (const auto* fly = std::get_if<Fly>(&payload)) check(*fly);
 }
 
-template <class Message>
-std::string encode_as(const char* type, const Message& message) {
-    Json json = write_struct(message);
-    json["type"] = type;
-    return dump(json);
+template <class... Messages>
+std::vector<ServerMessageType> types_of(const std::variant<Messages...>*) {
+    return {{Messages::kType, table_of<Messages>()}...};
 }
 
 }  // namespace
@@ -114,17 +112,16 @@ const char* name_of(NavigationState::Style style) {
     return kStyle.words[static_cast<std::size_t>(style)].data();
 }
 
-std::string encode(const Welcome& message) { return encode_as("welcome", message); }
-std::string encode(const Ok& message) { return encode_as("ok", message); }
-std::string encode(const Picked& message) { return encode_as("picked", message); }
-std::string encode(const Pointed& message) { return encode_as("pointed", message); }
-std::string encode(const Flown& message) { return encode_as("flown", message); }
-std::string encode(const TreePage& message) { return encode_as("tree", message); }
-std::string encode(const Checked& message) { return encode_as("checked", message); }
-std::string encode(const SceneList& message) { return encode_as("scenes", message); }
-std::string encode(const SharedAddress& message) { return encode_as("shared", message); }
-std::string encode(const Loading& message) { return encode_as("loading", message); }
-std::string encode(const Stats& message) { return encode_as("stats", message); }
-std::string encode(const Error& message) { return encode_as("error", message); }
+std::span<const ServerMessageType> server_message_types() {
+    static const auto types = types_of(static_cast<const ServerMessage*>(nullptr));
+    return types;
+}
+
+std::string encode_server_message(std::size_t place, const void* message) {
+    const ServerMessageType& type = server_message_types()[place];
+    Json json = write_fields(type.table, message);
+    json["type"] = type.name;
+    return dump(json);
+}
 
 }  // namespace vrut::protocol

@@ -18,19 +18,20 @@ std::string encode(const ClientMessage& message);
 /// A flight from the text of a JSON object with the members of `fly`; others are ignored.
 tl::expected<Fly, Error> parse_flight(std::string_view text);
 
-/// A server's text message.
-std::string encode(const Welcome& message);
-std::string encode(const Ok& message);
-std::string encode(const Picked& message);
-std::string encode(const Pointed& message);
-std::string encode(const Flown& message);
-std::string encode(const TreePage& message);
-std::string encode(const Checked& message);
-std::string encode(const SceneList& message);
-std::string encode(const SharedAddress& message);
-std::string encode(const Loading& message);
-std::string encode(const Stats& message);
-std::string encode(const Error& message);
+std::string encode_server_message(std::size_t place, const void* message);
+template <class Message, class... All>
+constexpr std::size_t place_among(const std::variant<All...>*) {
+    std::size_t place = 0;
+    const bool found = ((std::is_same_v<Message, All> || (++place, false)) || ...);
+    return found ? place : throw "it is no ServerMessage";
+}
+/// A server's text message: any that ServerMessage can hold.
+template <class Message>
+requires requires { Message::kType; }
+std::string encode(const Message& message) {
+    constexpr std::size_t kPlace = place_among<Message>(static_cast<const ServerMessage*>(nullptr));
+    return encode_server_message(kPlace, &message);
+}
 
 /// The word that stands for it in messages and in the state.
 const char* name_of(Role role);

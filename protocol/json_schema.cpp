@@ -47,10 +47,6 @@ void add_client_messages(Json& defs) {
         Json::parse(R"({"x": ["y"], "y": ["x"], "frame": ["x", "y"]})");
 }
 
-void add_server_message(Json& defs, const char* type, const FieldTable& table) {
-    add(defs, "serverMessage", "server" + capitalized(type), with_type(schema_of(table), type));
-}
-
 /// An object with these properties, all of which must be there but those that are named.
 Json object_with(std::initializer_list<std::pair<const char*, Json>> properties,
                  std::initializer_list<std::string_view> may_be_missing = {}) {
@@ -69,18 +65,8 @@ Json described(Json schema, const char* meaning) {
 }
 
 void add_server_messages(Json& defs) {
-    add_server_message(defs, "welcome", table_of<Welcome>());
-    add_server_message(defs, "ok", table_of<Ok>());
-    add_server_message(defs, "picked", table_of<Picked>());
-    add_server_message(defs, "pointed", table_of<Pointed>());
-    add_server_message(defs, "flown", table_of<Flown>());
-    add_server_message(defs, "tree", table_of<TreePage>());
-    add_server_message(defs, "checked", table_of<Checked>());
-    add_server_message(defs, "scenes", table_of<SceneList>());
-    add_server_message(defs, "shared", table_of<SharedAddress>());
-    add_server_message(defs, "loading", table_of<Loading>());
-    add_server_message(defs, "stats", table_of<Stats>());
-    add_server_message(defs, "error", table_of<Error>());
+    for (const auto& [name, table] : server_message_types())
+        add(defs, "serverMessage", "server" + capitalized(name), with_type(schema_of(table), name));
     const Json revision = described(schema_of(Integer{1, kMaxInteger}), "Of the state, once this is in it.");
     const Json state = described(reference("stateDocument"), "The whole document.");
     add(defs, "serverMessage", "serverState",

@@ -40,6 +40,7 @@ enum class ImageFormat { jpeg, png };
 
 /// One sentence for a person that names the culprit, and a code for a program.
 struct Error {
+    static constexpr const char* kType = "error";
     std::optional<std::int64_t> id;
     std::string code, message;
 };

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "messages.hpp"
@@ -34,6 +35,7 @@ struct InputRules {
 };
 
 struct Welcome {
+    static constexpr const char* kType = "welcome";
     int version = kVersion;
     std::string server;  ///< the program's version
     std::string client;
@@ -44,6 +46,7 @@ struct Welcome {
 };
 
 struct Ok {
+    static constexpr const char* kType = "ok";
     std::int64_t id = 0;
     std::int64_t revision = 0;
     std::optional<std::string> name;  ///< of the event log
@@ -56,6 +59,7 @@ struct Snapped {
 };
 
 struct Picked {
+    static constexpr const char* kType = "picked";
     std::int64_t id = 0;
     // Where something was hit:
     std::optional<std::int64_t> node;
@@ -69,12 +73,14 @@ struct Picked {
 
 /// What a client points at now.
 struct Pointed {
+    static constexpr const char* kType = "pointed";
     std::string client;
     std::optional<std::string> name;          ///< as others see it
     std::optional<glm::dvec3> point, normal;  ///< world, as Picked's; none: it points at nothing any more
 };
 
 struct Flown {
+    static constexpr const char* kType = "flown";
     std::int64_t id = 0;
     bool completed = false;
 };
@@ -102,6 +108,7 @@ struct TreeNode {
 };
 
 struct TreePage {
+    static constexpr const char* kType = "tree";
     std::int64_t id = 0;
     std::vector<TreeNode> nodes;
     std::optional<std::int64_t> next;  ///< `after` for the page that follows; none: this was the last
@@ -109,6 +116,7 @@ struct TreePage {
 
 /// What of a list of cues does not go with the scene.
 struct Checked {
+    static constexpr const char* kType = "checked";
     struct Problem {
         std::optional<std::string> cue;  ///< none: the whole list
         std::string message;
@@ -120,12 +128,14 @@ struct Checked {
 };
 
 struct SceneList {
+    static constexpr const char* kType = "scenes";
     std::int64_t id = 0;
     std::vector<std::string> scenes;  ///< names for `open`, sorted
 };
 
 /// Where others open the page, to watch only.
 struct SharedAddress {
+    static constexpr const char* kType = "shared";
     std::int64_t id = 0;
     std::string address;
     std::vector<std::string> qr;  ///< it as a QR code: rows of 0 (light) and 1 (dark), without a quiet zone
@@ -134,6 +144,7 @@ struct SharedAddress {
 
 /// How far the loading of a scene is; once at the end either `done` or `refused`.
 struct Loading {
+    static constexpr const char* kType = "loading";
     std::string scene;
     double fraction = 0;
     std::optional<bool> done;
@@ -142,6 +153,7 @@ struct Loading {
 
 /// What the server measures.
 struct Stats {
+    static constexpr const char* kType = "stats";
     struct Renderer {
         double mean_render_ms = 0, median_render_ms = 0, p95_render_ms = 0;  ///< of the last 100 frames
     };
@@ -156,5 +168,10 @@ struct Stats {
     int clients = 0, watchers = 0;
     double frames_per_second = 0, bytes_per_second = 0;
 };
+
+/// All that the server says in text, but `state` and `patch` (StateDocument). A new type is a struct here,
+/// with its word in `type` and its members, and their description (server_descriptions.hpp).
+using ServerMessage = std::variant<Welcome, Ok, Picked, Pointed, Flown, TreePage, Checked, SceneList,
+                                   SharedAddress, Loading, Stats, Error>;
 
 }  // namespace vrut::protocol

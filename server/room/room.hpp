@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "codec.hpp"
 #include "cue_list.hpp"
 #include "event_log.hpp"
 #include "frame_header.hpp"
@@ -221,7 +222,12 @@ private:
     void answer(const Received& received, std::optional<std::string> name = {});
     /// Done, with an answer of its own.
     template <class Message>
-    void answer_with(const Received& received, const Message& message);
+    void answer_with(const Received& received, Message message) {
+        accepted_ = true;
+        if (!received.message.id) return;
+        message.id = *received.message.id;
+        answers_.push_back({received.client, protocol::encode(message), document()->revision()});
+    }
     void reject(const Received& received, const char* code, const std::string& sentence);
 
     // --- who steers

@@ -12,19 +12,6 @@ namespace vrut::server::room {
 using protocol::Error;
 namespace code = protocol::error_code;
 
-template <class Message>
-void Room::answer_with(const Received& received, const Message& message) {
-    accepted_ = true;
-    if (!received.message.id) return;
-    Message answer = message;
-    answer.id = *received.message.id;
-    answers_.push_back({received.client, protocol::encode(answer), document()->revision()});
-}
-template void Room::answer_with(const Received&, const protocol::Picked&);
-template void Room::answer_with(const Received&, const protocol::Checked&);
-template void Room::answer_with(const Received&, const protocol::SceneList&);
-template void Room::answer_with(const Received&, const protocol::SharedAddress&);
-
 void Room::apply(const Received& received, const protocol::Navigate& navigate) {
     steer(received);
     scene::Camera moved =
