@@ -18,6 +18,7 @@ std::string encode(const ClientMessage& message);
 /// A flight from the text of a JSON object with the members of `fly`; others are ignored.
 tl::expected<Fly, Error> parse_flight(std::string_view text);
 
+/// `place`: of its type in ServerMessage.
 std::string encode_server_message(std::size_t place, const void* message);
 template <class Message, class... All>
 constexpr std::size_t place_among(const std::variant<All...>*) {

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <concepts>
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -18,8 +16,8 @@
 /// protocol's own .cpp files.
 namespace vrut::protocol {
 
-/// What can be done with values of a member's C++ type of which only the address is known; null: what is not
-/// needed of it, or what it has not.
+/// What can be done with a value of a member's C++ type, given its address. Null: the type cannot do it, or
+/// nobody needs it.
 struct Type {
     bool (*empty)(const void* value);
     bool (*equal)(const void* a, const void* b);
@@ -134,37 +132,23 @@ constexpr void add_optional(Type& type) {
         };
     }
 }
-/// Of what is always written.
-template <class T>
-const Type* type_of_required() {
+/// Comparisons and copies are compiled only where this presence needs them.
+template <class T, Presence presence>
+const Type* type_of() {
     static constexpr Type type = [] {
         Type made{};
         add_optional<T>(made);
-        return made;
-    }();
-    return &type;
-}
-/// Of what is written where it has not its default.
-template <class T>
-const Type* type_of_optional() {
-    static constexpr Type type = [] {
-        Type made{};
-        add_optional<T>(made);
-        add_comparison<T>(made);
-        return made;
-    }();
-    return &type;
-}
-/// Of the state.
-template <class T>
-const Type* type_of_lasting() {
-    static constexpr Type type = [] {
-        Type made{};
-        add_optional<T>(made);
-        add_comparison<T>(made);
-        made.copy = [](void* to, const void* from) { *static_cast<T*>(to) = *static_cast<const T*>(from); };
-        if constexpr (requires(T & value) { value.has_value(); })
-            made.reset = [](void* value) { static_cast<T*>(value)->reset(); };
+        if constexpr (presence != Presence::required) add_comparison<T>(made);
+        if constexpr (presence == Presence::lasting) {
+            made.copy = [](void* to, const void* from) {
+                *static_cast<T*>(to) = *static_cast<const T*>(from);
+            };
+            if constexpr (requires(T & value) {
+                              value.reset();
+                              value.has_value();
+                          })
+                made.reset = [](void* value) { static_cast<T*>(value)->reset(); };
+        }
         return made;
     }();
     return &type;
@@ -221,19 +205,19 @@ public:
 
     template <class Member, class Owner, class Kind>
     void required(const char* name, Member Owner::*member, const Kind& kind, const char* meaning) {
-        add(name, kind_for<Member>(kind), type_of_required<Member>(), &(defaults_.*member), meaning,
-            Presence::required, none);
+        add(name, kind_for<Member>(kind), type_of<Member, Presence::required>(), &(defaults_.*member),
+            meaning, Presence::required, none);
     }
     template <class Member, class Owner, class Kind>
     void optional(const char* name, Member Owner::*member, const Kind& kind, const char* meaning) {
-        add(name, kind_for<Member>(kind), type_of_optional<Member>(), &(defaults_.*member), meaning,
-            Presence::optional, none);
+        add(name, kind_for<Member>(kind), type_of<Member, Presence::optional>(), &(defaults_.*member),
+            meaning, Presence::optional, none);
     }
     /// Of the state: clients may patch it.
     template <class Member, class Owner, class Kind>
     void writable(const char* name, Member Owner::*member, const Kind& kind, const char* meaning,
                   unsigned rules = none) {
-        add(name, kind_for<Member>(kind), type_of_lasting<Member>(), &(defaults_.*member), meaning,
+        add(name, kind_for<Member>(kind), type_of<Member, Presence::lasting>(), &(defaults_.*member), meaning,
             Presence::lasting, rules);
     }
     /// Of the state: the server's alone.

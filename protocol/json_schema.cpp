@@ -47,7 +47,7 @@ void add_client_messages(Json& defs) {
         Json::parse(R"({"x": ["y"], "y": ["x"], "frame": ["x", "y"]})");
 }
 
-/// An object with these properties, all of which must be there but those that are named.
+/// An object with these properties. All of them are required, except those in `may_be_missing`.
 Json object_with(std::initializer_list<std::pair<const char*, Json>> properties,
                  std::initializer_list<std::string_view> may_be_missing = {}) {
     Json schema = Json::parse(R"({"type": "object", "properties": {}, "required": []})");

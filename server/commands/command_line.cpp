@@ -265,7 +265,7 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
     command->description = {
         "The server draws the scene without a window, and streams frames of it to web pages, hosts and "
         "scripts. It prints the address of its page when it accepts connections, and logs to standard error. "
-        "SIGINT, SIGTERM and SIGHUP end it; with --tls-cert, SIGHUP makes it read certificate and key anew.",
+        "SIGINT, SIGTERM and SIGHUP end it; with --tls-cert, SIGHUP makes it read certificate and key again.",
         "Beyond this machine, clients need a token. Where neither a file nor the environment has one, the "
         "server makes two, and prints the addresses with their tokens, one of them as a QR code.",
         "Where the server speaks HTTPS, plain HTTP is served to this machine alone. With --lan, the page "
@@ -308,7 +308,7 @@ std::shared_ptr<Command> describe_edge(EdgeArguments& arguments) {
         "is at /rooms/NAME/. It draws nothing itself, and sends on each image that a server has encoded "
         "once. "
         "The more edges there are, the more clients can watch. "
-        "SIGINT, SIGTERM and SIGHUP end it; with --tls-cert, SIGHUP makes it read certificate and key anew.",
+        "SIGINT, SIGTERM and SIGHUP end it; with --tls-cert, SIGHUP makes it read certificate and key again.",
         "Clients need the tokens of the room. The edge's own tokens are for those who monitor it. Without "
         "them, an edge that other machines can reach keeps its metrics to itself."};
     add_nats(*command, arguments.nats, "Find the rooms at this NATS server.")->required();

@@ -177,8 +177,8 @@ void refuse_origin(const Call& call, std::string_view origin) {
                     (allowed ? "start the server with --allow-origin " + *allowed : "it is none of HTTP"));
 }
 
-/// A browser hides from its page why a handshake was refused: an ordinary request, with the page's origin as
-/// the query's `origin`, is told.
+/// A browser does not tell its page why a handshake was refused. So the page sends an ordinary request, with
+/// its origin in the query, and gets the reason as the answer.
 void send_websocket(const Call& call) {
     if (!beast::websocket::is_upgrade(*call.request) ||
         call.field(http::field::sec_websocket_version) != "13") {

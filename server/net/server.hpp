@@ -86,8 +86,8 @@ public:
     engine::RoomEngine& engine();
     observe::Metrics& metrics();
 
-    /// From here on SIGTERM and SIGINT do what stop() does, and SIGHUP, too, where the server has no
-    /// certificates of files. Those it reads anew.
+    /// From here on SIGTERM and SIGINT do what stop() does. SIGHUP reads the files of the certificate again;
+    /// a server without such files is stopped by it.
     void heed_signals();
     /// Serves until stop(); clients get a goodbye, and it ends within 3 s. Throws std::runtime_error where
     /// drawing fails for good.

@@ -25,7 +25,7 @@ public:
     boost::asio::ssl::context& context_for(const boost::asio::ip::address& local);
     /// Null where the certificates are of files.
     const CertificateAuthority* authority() const { return authority_ ? &*authority_ : nullptr; }
-    /// Reads the files anew, for connections that begin from here on. Throws std::runtime_error, and then
+    /// Reads the files again, for connections that begin from here on. Throws std::runtime_error, and then
     /// goes on with what it has.
     void reload();
 

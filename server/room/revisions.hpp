@@ -24,7 +24,8 @@ public:
         changed_by_ = changing_;
         return newest_;
     }
-    /// As of() has it, but as this revision, of which others are sure; `first`: it follows none.
+    /// As of() has it, but as this revision, which another server has given it. `first`: there is none before
+    /// it.
     void go_to(std::int64_t revision, const protocol::State& state, bool first = false) {
         newest_ =
             protocol::StateDocument::next(first ? protocol::StateDocument{} : *newest_, state, revision);

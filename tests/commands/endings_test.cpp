@@ -219,7 +219,7 @@ TEST_CASE("SIGTERM, SIGINT and SIGHUP while frames go to clients that do not tak
     }
 }
 
-TEST_CASE("SIGHUP makes a server with certificates of files read them anew, and does not end it") {
+TEST_CASE("SIGHUP makes a server read the files of its certificate again, and does not end it") {
     const TemporaryFolder folder;
     const vrut::server::net::CertificateAuthority authority(folder.path() / "authority.pem");
     const fs::path certificate = folder.path() / "certificate.pem", key = folder.path() / "key.pem";

@@ -162,7 +162,7 @@ TEST_CASE("certificates and keys that cannot be used are refused with a sentence
 }
 
 TEST_CASE(
-    "certificate and key are read anew when they were renewed; where they cannot be, the old ones stay") {
+    "certificate and key are read again when they were renewed; where they cannot be, the old ones stay") {
     const TemporaryFolder folder;
     const CertificateAuthority authority(folder.path() / "a.pem");
     const auto certificate = folder.path() / "c.pem", key = folder.path() / "k.pem";

@@ -195,7 +195,7 @@ TEST_CASE("the last frames are remembered by their numbers") {
     CHECK(frames.all().size() == SeenFrames::kMost);
 }
 
-TEST_CASE("measures are made anew where one of them or the scene has changed, and only then") {
+TEST_CASE("measures are made again where one of them or the scene has changed, and only then") {
     Measures measures;
     protocol::SharedMap<protocol::MeasureState> asked;
     const auto placed = std::make_shared<const scene::PlacedScene>(scene::place(scene::Scene()));

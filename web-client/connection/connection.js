@@ -178,7 +178,7 @@ export class Connection {
     if (!this.#opened) this.#learnWhy({ name: 'waiting', retryMs, hadOpened });
   }
 
-  /** Browsers hide from their pages why a handshake was refused: an ordinary request is told. @param {Phase} phase */
+  /** A browser does not tell why a handshake was refused; the answer to an ordinary request does. @param {Phase} phase */
   async #learnWhy(phase) {
     const answer = await fetch(`${this.#url.replace('ws', 'http')}?origin=${location.origin}`).catch(() => undefined);
     const message = answer && [403, 426].includes(answer.status) && (await answer.text()).trim();
